@@ -1,0 +1,231 @@
+/* pipeline.c - joins the blocks, down Figure 2 of the paper: divider, slice generator, rasterizer, texture unit, alpha
+ * blender, pixel cache, frame buffer. One fragment after the other, in the order the machine draws them. */
+#include <stdlib.h>
+
+#include "alpha_blender.h"
+#include "error.h"
+#include "frame_buffer.h"
+#include "layout.h"
+#include "pixel_cache.h"
+#include "rasterizer.h"
+#include "slice_generator.h"
+#include "texture_unit.h"
+#include "vodr.h"
+#include "volume_divider.h"
+
+typedef struct pipeline {
+    const vodr_machine *machine;
+    const vodr_view *view;
+    volume_divider divider;
+    texture_unit texture;
+    alpha_blender blender;
+    pixel_cache cache;
+    frame_buffer memory;
+    uint16_t *densities;  /* of a span */
+    vodr_rgba *fragments; /* likewise */
+    uint8_t *seen;        /* by brick: visited before */
+    vodr_counters counters;
+} pipeline;
+
+/* What one visit covers. */
+typedef struct footprint {
+    px_rect px;
+    uint64_t slices;
+} footprint;
+
+static void read_line(void *context, int64_t line, vodr_rgba *pixels)
+{
+    frame_buffer_read_line(context, line, pixels);
+}
+
+static void write_line(void *context, int64_t line, const vodr_rgba *pixels)
+{
+    frame_buffer_write_line(context, line, pixels);
+}
+
+/* The fragments [from, to) of a span: one line, none of them dead. */
+static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
+{
+    int32_t x = s->x0 + from, count = to - from;
+    int64_t line = line_number(&p->memory.layout, x, s->y);
+    int32_t offset = line_offset(&p->memory.layout, x, s->y);
+    vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count) + offset;
+    int32_t written =
+        alpha_blender_run(&p->blender, p->fragments + from, count, pixels, &p->counters.terminated_fragments);
+    if (!written)
+        return;
+    pixel_cache_written(&p->cache);
+    if (p->machine->write_policy == VODR_WRITE_POLICY_THROUGH)
+        frame_buffer_write_pixels(&p->memory, line, offset, pixels, count, written);
+}
+
+static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
+{
+    int32_t count = s->x1 - s->x0, line_w = p->memory.layout.line_w_px;
+    p->counters.fragments += (uint64_t)count;
+    p->counters.texture_load_bytes += texture_unit_filter(&p->texture, slice, s, p->densities);
+    for (int32_t i = 0; i < count; i++)
+        p->fragments[i] = p->texture.colours[p->densities[i]];
+    for (int32_t from = 0; from < count;) {
+        int32_t to = from, line_end = ((s->x0 + from) / line_w + 1) * line_w - s->x0;
+        if (line_end > count)
+            line_end = count;
+        while (to < line_end && !p->texture.dead[p->densities[to]])
+            to++;
+        if (to > from)
+            blend_run(p, s, from, to);
+        for (from = to; from < line_end && p->texture.dead[p->densities[from]]; from++)
+            p->counters.killed_fragments++;
+    }
+}
+
+static void grow(px_rect *r, const span *s)
+{
+    r->x0 = s->x0 < r->x0 ? s->x0 : r->x0;
+    r->x1 = s->x1 > r->x1 ? s->x1 : r->x1;
+    r->y0 = s->y < r->y0 ? s->y : r->y0;
+    r->y1 = s->y >= r->y1 ? s->y + 1 : r->y1;
+}
+
+/* A candidate becomes a visit at its first fragment. */
+static void begin_visit(pipeline *p, const candidate *c)
+{
+    p->counters.brick_visits++;
+    p->counters.bricks += !p->seen[c->brick];
+    p->seen[c->brick] = 1;
+    p->counters.texture_load_bytes += texture_unit_load(&p->texture, c->brick, &c->box);
+}
+
+static void draw_candidate(pipeline *p, const candidate *c)
+{
+    slice_generator slices =
+        slice_generator_start(p->view, &c->box, c->k0, c->k1, p->machine->blend == VODR_BLEND_UNDER);
+    footprint covered = {.px = {INT32_MAX, INT32_MAX, 0, 0}};
+    brick_slice slice;
+    while (slice_generator_next(&slices, &slice)) {
+        rasterizer rows = rasterizer_start(&slice, &c->bound);
+        span s;
+        bool any = false;
+        while (rasterizer_next(&rows, &s)) {
+            if (!any && !covered.slices)
+                begin_visit(p, c);
+            any = true;
+            grow(&covered.px, &s);
+            draw_span(p, &slice, &s);
+        }
+        covered.slices += any;
+    }
+    p->counters.brick_slices += covered.slices;
+    int32_t limit = p->counters.tile_px;
+    if (covered.slices && p->counters.brick_vox)
+        p->counters.brick_overflows += covered.px.x1 - covered.px.x0 > limit || covered.px.y1 - covered.px.y0 > limit;
+}
+
+static vodr_status check_volume(const vodr_volume *v, const vodr_machine *m, vodr_error *error)
+{
+    for (int c = 0; c < 3; c++)
+        if (v->dims_vox[c] < 1 || v->dims_vox[c] > VODR_MAX_DIM_VOX)
+            return vodr_fail(error, VODR_INVALID, "the volume is %dx%dx%d voxels but must have 1 to %d a side",
+                             v->dims_vox[0], v->dims_vox[1], v->dims_vox[2], VODR_MAX_DIM_VOX);
+    if (v->voxel_bytes != 1 && v->voxel_bytes != 2)
+        return vodr_fail(error, VODR_INVALID, "voxel_bytes is %d but must be 1 or 2", v->voxel_bytes);
+    if (v->voxel_bytes == 1 && !v->map && m->density_bits != 8)
+        return vodr_fail(error, VODR_INVALID, "8-bit voxels without a map need density_bits=8, not %d",
+                         m->density_bits);
+    for (int i = 0; v->voxel_bytes == 1 && v->map && i < 256; i++)
+        if (v->map[i] >> m->density_bits)
+            return vodr_fail(error, VODR_INVALID, "map entry %d is %d but must be below %d", i, v->map[i],
+                             1 << m->density_bits);
+    return VODR_OK;
+}
+
+static vodr_status start(pipeline *p, const vodr_volume *volume, const vodr_table *table, vodr_error *error)
+{
+    const vodr_machine *m = p->machine;
+    vodr_status status = vodr_machine_check(m, error);
+    if (status == VODR_OK)
+        status = check_volume(volume, m, error);
+    if (status == VODR_OK)
+        status = vodr_view_check(p->view, volume->dims_vox, error);
+    if (status == VODR_OK)
+        status = texture_unit_start(&p->texture, m, volume, table, p->view, error);
+    if (status == VODR_OK)
+        status = volume_divider_start(&p->divider, m, volume, p->view, p->texture.transparent_to, error);
+    if (status == VODR_OK)
+        status = texture_unit_reserve(&p->texture, p->divider.edge_vox, error);
+    if (status == VODR_OK)
+        status = frame_buffer_start(&p->memory, m, p->view, error);
+    if (status != VODR_OK)
+        return status;
+    p->blender = alpha_blender_of(m);
+    status = pixel_cache_start(&p->cache, m, p->memory.layout.lines,
+                               (cache_memory){.context = &p->memory, .read_line = read_line, .write_line = write_line},
+                               error);
+    size_t width = (size_t)p->view->width_px, bricks = 1;
+    for (int c = 0; c < 3; c++)
+        bricks *= (size_t)p->divider.bricks[c];
+    p->densities = malloc(width * sizeof *p->densities);
+    p->fragments = malloc(width * sizeof *p->fragments);
+    p->seen = calloc(bricks, 1);
+    if (status == VODR_OK && (!p->densities || !p->fragments || !p->seen))
+        status = vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of %zu bricks", bricks);
+    return status;
+}
+
+static void finish(pipeline *p)
+{
+    free(p->densities);
+    free(p->fragments);
+    free(p->seen);
+    pixel_cache_finish(&p->cache);
+    frame_buffer_finish(&p->memory);
+    volume_divider_finish(&p->divider);
+    texture_unit_finish(&p->texture);
+}
+
+static void gather_counters(pipeline *p)
+{
+    vodr_counters *n = &p->counters;
+    n->hits = p->cache.hits;
+    n->misses = p->cache.misses;
+    n->evictions = p->cache.evictions;
+    n->writebacks = p->cache.writebacks;
+    n->fb_read_bytes = p->memory.read_bytes;
+    n->fb_write_bytes = p->memory.write_bytes;
+    n->skipped_bricks = p->divider.empty_bricks;
+}
+
+vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
+                        const vodr_view *view, const vodr_options *options, vodr_frame *frame, vodr_counters *counters,
+                        vodr_error *error)
+{
+    pipeline p = {.machine = machine, .view = view};
+    *frame = (vodr_frame){0};
+    *counters = (vodr_counters){0};
+    vodr_status status = start(&p, volume, table, error);
+    if (status == VODR_OK) {
+        p.counters.tile_px = tile_px(machine);
+        p.counters.brick_vox = p.divider.edge_vox;
+        candidate c;
+        while (volume_divider_next(&p.divider, &c)) {
+            draw_candidate(&p, &c);
+            if (options && options->progress)
+                options->progress(options->progress_context, volume_divider_done(&p.divider));
+        }
+        pixel_cache_flush(&p.cache);
+        const vodr_rgba *readout = machine->blend == VODR_BLEND_MIP ? p.texture.readout : NULL;
+        status = frame_buffer_readout(&p.memory, machine, readout, frame, error);
+    }
+    if (status == VODR_OK) {
+        gather_counters(&p);
+        *counters = p.counters;
+    }
+    finish(&p);
+    return status;
+}
+
+void vodr_frame_free(vodr_frame *frame)
+{
+    free(frame->pixels);
+    *frame = (vodr_frame){0};
+}

@@ -1,0 +1,138 @@
+/* pixel_cache.c - tags, replacement and write policy (docs/architecture.md, "Pixel cache"). A run of accesses to one
+ * line is one look-up: after the first, the others hit, and leave the order of replacement as it is. */
+#include "pixel_cache.h"
+
+#include <stdlib.h>
+
+#include "error.h"
+#include "layout.h"
+
+enum { LFSR_SEED = 0xACE1, LFSR_TAPS = 0xB400 };
+
+vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t frame_lines, cache_memory memory,
+                              vodr_error *error)
+{
+    *c = (pixel_cache){.memory = memory,
+                       .sets = cache_sets(m),
+                       .ways = m->ways,
+                       .line_pixels = line_pixels(m),
+                       .xor_index = m->index == VODR_INDEX_XOR,
+                       .through = m->write_policy == VODR_WRITE_POLICY_THROUGH,
+                       .clear_on_first_touch = m->clear_on_first_touch,
+                       .replacement = (vodr_replacement)m->replacement,
+                       .lfsr = LFSR_SEED};
+    while (1 << c->set_bits < c->sets)
+        c->set_bits++;
+    size_t lines = (size_t)c->sets * (size_t)c->ways;
+    c->lines = malloc(lines * sizeof *c->lines);
+    c->pixels = malloc(lines * (size_t)c->line_pixels * sizeof *c->pixels);
+    c->touched = calloc(c->clear_on_first_touch ? (size_t)frame_lines : 1, 1);
+    if (!c->lines || !c->pixels || !c->touched)
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a pixel cache of %zu lines", lines);
+    for (size_t i = 0; i < lines; i++)
+        c->lines[i] = (cache_line){.number = -1};
+    return VODR_OK;
+}
+
+/* The set of a line: its number modulo the sets, or the exclusive or of its number's digits in base `sets`. */
+static int32_t set_of(const pixel_cache *c, int64_t line)
+{
+    uint64_t mask = (uint64_t)c->sets - 1, set = 0, rest = (uint64_t)line;
+    if (!c->xor_index)
+        return (int32_t)(rest & mask);
+    for (; rest && c->set_bits; rest >>= c->set_bits)
+        set ^= rest & mask;
+    return (int32_t)set;
+}
+
+static vodr_rgba *pixels_of(const pixel_cache *c, const cache_line *line)
+{
+    return c->pixels + (size_t)(line - c->lines) * (size_t)c->line_pixels;
+}
+
+/* An invalid way, lowest first; else the policy's choice. */
+static cache_line *choose_victim(pixel_cache *c, cache_line *set)
+{
+    cache_line *victim = set;
+    for (int32_t way = 0; way < c->ways; way++) {
+        if (set[way].number < 0)
+            return &set[way];
+        if (set[way].stamp < victim->stamp)
+            victim = &set[way];
+    }
+    if (c->replacement != VODR_REPLACEMENT_RANDOM)
+        return victim;
+    c->lfsr = (c->lfsr >> 1) ^ (c->lfsr & 1 ? LFSR_TAPS : 0);
+    return &set[c->lfsr & (uint32_t)(c->ways - 1)];
+}
+
+static void write_back(pixel_cache *c, cache_line *line)
+{
+    if (!line->dirty)
+        return;
+    c->memory.write_line(c->memory.context, line->number, pixels_of(c, line));
+    line->dirty = false;
+    c->writebacks++;
+}
+
+static void fill(pixel_cache *c, cache_line *line, int64_t number)
+{
+    if (line->number >= 0) {
+        write_back(c, line);
+        c->evictions++;
+    }
+    vodr_rgba *pixels = pixels_of(c, line);
+    *line = (cache_line){.number = number, .stamp = c->clock};
+    if (c->clear_on_first_touch && !c->touched[number]) {
+        c->touched[number] = 1;
+        for (int32_t i = 0; i < c->line_pixels; i++)
+            pixels[i] = (vodr_rgba){0};
+    } else {
+        c->memory.read_line(c->memory.context, number, pixels);
+    }
+}
+
+static cache_line *look_up(const pixel_cache *c, cache_line *set, int64_t number)
+{
+    for (int32_t way = 0; way < c->ways; way++)
+        if (set[way].number == number)
+            return &set[way];
+    return NULL;
+}
+
+vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count)
+{
+    c->clock++;
+    cache_line *set = c->lines + (size_t)set_of(c, line) * (size_t)c->ways, *found = look_up(c, set, line);
+    if (found) {
+        c->hits += (uint64_t)count;
+    } else {
+        c->misses++;
+        c->hits += (uint64_t)count - 1;
+        found = choose_victim(c, set);
+        fill(c, found, line);
+    }
+    if (c->replacement == VODR_REPLACEMENT_LRU)
+        found->stamp = c->clock;
+    c->last = found;
+    return pixels_of(c, found);
+}
+
+void pixel_cache_written(pixel_cache *c)
+{
+    c->last->dirty = !c->through;
+}
+
+void pixel_cache_flush(pixel_cache *c)
+{
+    for (size_t i = 0; i < (size_t)c->sets * (size_t)c->ways; i++)
+        write_back(c, &c->lines[i]);
+}
+
+void pixel_cache_finish(pixel_cache *c)
+{
+    free(c->lines);
+    free(c->pixels);
+    free(c->touched);
+    *c = (pixel_cache){0};
+}

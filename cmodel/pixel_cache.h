@@ -1,0 +1,51 @@
+/* pixel_cache.h - the cache between alpha blender and frame buffer: set-associative lines of pixels (Figure 2 and Table
+ * 1 of the paper). */
+#ifndef VODR_PIXEL_CACHE_H
+#define VODR_PIXEL_CACHE_H
+
+#include "vodr.h"
+
+typedef struct cache_line {
+    int64_t number; /* of the line it holds; -1: none */
+    uint64_t stamp; /* lru: of the last access, fifo: of the fill */
+    bool dirty;
+} cache_line;
+
+/* What the cache asks of the memory behind it. */
+typedef struct cache_memory {
+    void *context;
+    void (*read_line)(void *context, int64_t line, vodr_rgba *pixels);
+    void (*write_line)(void *context, int64_t line, const vodr_rgba *pixels);
+} cache_memory;
+
+typedef struct pixel_cache {
+    cache_memory memory;
+    int32_t sets, ways, line_pixels;
+    int32_t set_bits;
+    bool xor_index, through, clear_on_first_touch;
+    vodr_replacement replacement;
+    cache_line *lines; /* set after set */
+    vodr_rgba *pixels; /* of each line */
+    uint8_t *touched;  /* by line number: whether it missed before in this frame; clear_on_first_touch only */
+    uint64_t clock;
+    uint32_t lfsr;
+    cache_line *last; /* of the last access */
+    uint64_t hits, misses, evictions, writebacks;
+} pixel_cache;
+
+/* An empty cache over a frame buffer of `frame_lines` lines. Free with pixel_cache_finish() in either case. */
+vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t frame_lines, cache_memory memory,
+                              vodr_error *error);
+
+/* `count` accesses in a row to one line. Returns the line's pixels, valid until the next access. */
+vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count);
+
+/* The line of the last access was written. */
+void pixel_cache_written(pixel_cache *c);
+
+/* Writes every dirty line back, at the frame's end. */
+void pixel_cache_flush(pixel_cache *c);
+
+void pixel_cache_finish(pixel_cache *c);
+
+#endif

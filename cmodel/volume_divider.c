@@ -1,0 +1,264 @@
+/* volume_divider.c - brick size, brick order, empty bricks.
+ *
+ * Order: along a pixel, positions are monotone in k on every axis, so any nesting of three loops that each run in the
+ * direction of that motion visits the bricks of every pixel in the order of its samples. In parallel views the
+ * direction is the sign of step_s (the paper's cases 1 and 2); in perspective it is towards the eye's own brick from
+ * both sides, and that brick last (case 3). */
+#include "volume_divider.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "error.h"
+#include "layout.h"
+#include "voxels.h"
+
+int32_t volume_divider_edge(const vodr_machine *m, const vodr_view *view)
+{
+    if (m->traversal == VODR_TRAVERSAL_WHOLE)
+        return 0;
+    if (m->brick)
+        return m->brick;
+    int64_t edge = ((int64_t)tile_px(m) << VODR_FOOTPRINT_BITS) / view->footprint;
+    int64_t room = m->texture_memory_bytes / ((m->double_buffer ? 2 : 1) * density_bytes(m));
+    int64_t border = 2 * filter_border_vox(m), fits = 0;
+    while ((fits + 1 + border) * (fits + 1 + border) * (fits + 1 + border) <= room)
+        fits++;
+    if (edge > fits)
+        edge = fits;
+    return (int32_t)(edge > m->brick_min ? edge : m->brick_min);
+}
+
+/* A brick of this edge, clipped to the volume, must fit texture memory with its border. */
+static vodr_status check_room(const vodr_machine *m, const int32_t dims_vox[3], int32_t edge, vodr_error *error)
+{
+    int64_t bytes = density_bytes(m) * (m->double_buffer ? 2 : 1), border = 2 * filter_border_vox(m);
+    for (int c = 0; c < 3; c++)
+        bytes *= edge + border < dims_vox[c] ? edge + border : dims_vox[c];
+    if (bytes <= m->texture_memory_bytes)
+        return VODR_OK;
+    return vodr_fail(error, VODR_INVALID,
+                     "a brick of %" PRId32 " voxels (%s) needs %" PRId64
+                     " bytes of texture memory with its border%s, but texture_memory_bytes is %" PRId32,
+                     edge, m->brick ? "brick" : "brick_min", bytes, m->double_buffer ? ", double-buffered" : "",
+                     m->texture_memory_bytes);
+}
+
+/* The axis along which layers are stacked: the one the view looks along most, in voxels; of equals the last. */
+static int dominant_axis(const vodr_view *v)
+{
+    int best = 0;
+    int64_t largest = -1;
+    for (int c = 0; c < 3; c++) {
+        int64_t d = v->step_s[c];
+        if (v->perspective) /* twice the direction through the middle of the frame */
+            d = 2 * d + (v->width_px - 1) * v->step_u[c] + (v->height_px - 1) * v->step_v[c];
+        d = d < 0 ? -d : d;
+        if (d >= largest) {
+            largest = d;
+            best = c;
+        }
+    }
+    return best;
+}
+
+/* Loops over z, y, x with the dominant axis outermost (layers) or innermost (columns). */
+static void choose_nest(volume_divider *d, bool column)
+{
+    int dominant = dominant_axis(d->view), n = column ? 0 : 1;
+    for (int c = 2; c >= 0; c--)
+        if (c != dominant)
+            d->nest[n++] = c;
+    d->nest[column ? 2 : 0] = dominant;
+}
+
+/* The eye's brick index along an axis, -1 below the volume and `count` above it. */
+static int32_t eye_index(const volume_divider *d, int c, int32_t count)
+{
+    int64_t eye_vox = d->view->base[c] >> VODR_POSITION_BITS;
+    if (eye_vox < 0)
+        return -1;
+    return eye_vox >= d->dims_vox[c] ? count : (int32_t)(eye_vox / d->edge_vox);
+}
+
+static void fill_order(volume_divider *d, int c, bool front_to_back)
+{
+    int32_t count = d->bricks[c], *order = d->order[c], n = 0;
+    if (d->view->perspective) {
+        int32_t eye = eye_index(d, c, count);
+        for (int32_t i = 0; i < eye; i++)
+            order[n++] = i;
+        for (int32_t i = count - 1; i > eye; i--)
+            order[n++] = i;
+        if (n < count)
+            order[n] = eye;
+    } else {
+        for (int32_t i = 0; i < count; i++)
+            order[i] = d->view->step_s[c] >= 0 ? i : count - 1 - i;
+    }
+    for (int32_t i = 0; front_to_back && i < count / 2; i++) {
+        int32_t swap = order[i];
+        order[i] = order[count - 1 - i];
+        order[count - 1 - i] = swap;
+    }
+}
+
+static vox_box brick_box(const volume_divider *d, const int32_t first[3], const int32_t last[3])
+{
+    vox_box box;
+    for (int c = 0; c < 3; c++) {
+        int64_t hi = d->edge_vox ? ((int64_t)last[c] + 1) * d->edge_vox : d->dims_vox[c];
+        box.lo[c] = first[c] * d->edge_vox;
+        box.hi[c] = (int32_t)(hi < d->dims_vox[c] ? hi : d->dims_vox[c]);
+    }
+    return box;
+}
+
+static size_t brick_number(const volume_divider *d, const int32_t i[3])
+{
+    return ((size_t)i[2] * d->bricks[1] + i[1]) * d->bricks[0] + i[0];
+}
+
+static void find_empty(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
+                       const int32_t *transparent_to)
+{
+    int32_t i[3];
+    for (i[2] = 0; i[2] < d->bricks[2]; i[2]++)
+        for (i[1] = 0; i[1] < d->bricks[1]; i[1]++)
+            for (i[0] = 0; i[0] < d->bricks[0]; i[0]++) {
+                vox_box box = brick_box(d, i, i);
+                vox_box reach = voxels_reach(volume->dims_vox, &box, filter_border_vox(m));
+                int32_t min, max;
+                voxels_range(volume, m->density_bits, &reach, &min, &max);
+                bool empty = transparent_to[m->blend == VODR_BLEND_MIP ? 0 : min] >= max;
+                d->empty[brick_number(d, i)] = empty;
+                d->empty_bricks += empty;
+            }
+}
+
+vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
+                                 const vodr_view *view, const int32_t *transparent_to, vodr_error *error)
+{
+    *d = (volume_divider){.view = view, .projection = projection_of(view), .edge_vox = volume_divider_edge(m, view)};
+    size_t total = 1;
+    for (int c = 0; c < 3; c++) {
+        d->dims_vox[c] = volume->dims_vox[c];
+        d->bricks[c] = d->edge_vox ? ceil_div32(d->dims_vox[c], d->edge_vox) : 1;
+        total *= (size_t)d->bricks[c];
+    }
+    if (d->edge_vox) {
+        vodr_status status = check_room(m, d->dims_vox, d->edge_vox, error);
+        if (status != VODR_OK)
+            return status;
+    }
+    d->tile_px = m->traversal == VODR_TRAVERSAL_TILE ? tile_px(m) : 0;
+    choose_nest(d, m->traversal == VODR_TRAVERSAL_COLUMN);
+    for (int c = 0; c < 3; c++) {
+        d->order[c] = calloc((size_t)d->bricks[c], sizeof *d->order[c]);
+        if (!d->order[c])
+            return vodr_fail(error, VODR_NO_MEMORY, "no memory for the order of %" PRId32 " bricks", d->bricks[c]);
+        if (d->edge_vox)
+            fill_order(d, c, m->blend == VODR_BLEND_UNDER);
+    }
+    if (m->skip_empty) {
+        d->empty = malloc(total);
+        if (!d->empty)
+            return vodr_fail(error, VODR_NO_MEMORY, "no memory for the empty bits of %zu bricks", total);
+        find_empty(d, m, volume, transparent_to);
+    }
+    return VODR_OK;
+}
+
+/* The first or the next tile in row-major order; false after the last. */
+static bool next_tile(volume_divider *d)
+{
+    int32_t width = d->view->width_px, height = d->view->height_px;
+    int32_t w = d->tile_px ? d->tile_px : width, h = d->tile_px ? d->tile_px : height, x = 0, y = 0;
+    if (d->started) {
+        x = d->tile.x0 + w;
+        y = d->tile.y0;
+        if (x >= width) {
+            x = 0;
+            y += h;
+        }
+    }
+    if (y >= height)
+        return false;
+    d->started = true;
+    d->tile = (px_rect){x, y, x + w < width ? x + w : width, y + h < height ? y + h : height};
+    d->at[0] = d->at[1] = d->at[2] = 0;
+    return true;
+}
+
+/* Steps loop `level` on, with the loops inside it back at their start; false after the tile's last brick. */
+static bool advance(volume_divider *d, int level)
+{
+    for (; level >= 0; level--) {
+        for (int inner = level + 1; inner < 3; inner++)
+            d->at[inner] = 0;
+        if (++d->at[level] < d->bricks[d->nest[level]])
+            return true;
+    }
+    return false;
+}
+
+/* The bricks that the loops inside `level` run over: a slab, a row, or one brick. */
+static vox_box level_box(const volume_divider *d, int level, int32_t first[3])
+{
+    int32_t last[3];
+    for (int l = 0; l < 3; l++) {
+        int c = d->nest[l];
+        first[c] = l <= level ? d->order[c][d->at[l]] : 0;
+        last[c] = l <= level ? first[c] : d->bricks[c] - 1;
+    }
+    return brick_box(d, first, last);
+}
+
+/* Fills in the candidate where the loops stand and returns 3, or the level of the outermost loop that only just began
+ * and whose bricks, a slab, a row or one, cannot show. */
+static int propose(const volume_divider *d, candidate *c)
+{
+    int level = d->at[2] ? 2 : d->at[1] ? 1 : 0;
+    int32_t index[3];
+    for (; level < 3; level++) {
+        c->box = level_box(d, level, index);
+        if (!projection_bound(&d->projection, &c->box, &d->tile, &c->bound, &c->k0, &c->k1))
+            return level;
+    }
+    c->brick = brick_number(d, index);
+    return d->empty && d->empty[c->brick] ? 2 : 3;
+}
+
+bool volume_divider_next(volume_divider *d, candidate *c)
+{
+    bool more = (d->started && advance(d, 2)) || next_tile(d);
+    while (more) {
+        int level = propose(d, c);
+        if (level == 3)
+            return true;
+        more = advance(d, level) || next_tile(d);
+    }
+    return false;
+}
+
+double volume_divider_done(const volume_divider *d)
+{
+    double inner = 0, scale = 1;
+    for (int l = 0; l < 3; l++) {
+        scale /= d->bricks[d->nest[l]];
+        inner += d->at[l] * scale;
+    }
+    if (!d->tile_px)
+        return inner;
+    double rows = ceil_div32(d->view->height_px, d->tile_px), columns = ceil_div32(d->view->width_px, d->tile_px);
+    double tile = (double)(d->tile.y0 / d->tile_px) * columns + d->tile.x0 / d->tile_px;
+    return (tile + inner) / (rows * columns);
+}
+
+void volume_divider_finish(volume_divider *d)
+{
+    for (int c = 0; c < 3; c++)
+        free(d->order[c]);
+    free(d->empty);
+    *d = (volume_divider){0};
+}

@@ -1,0 +1,54 @@
+/* volume_divider.h - cuts the volume into bricks and hands them out in visibility order (Figures 1, 3 and 4 of the
+ * paper).
+ *
+ * The divider proposes candidates: bricks (in `tile` order, bricks with the tile they are clipped to) that may have
+ * fragments. A candidate becomes a visit when the rasterizer finds its first fragment. */
+#ifndef VODR_VOLUME_DIVIDER_H
+#define VODR_VOLUME_DIVIDER_H
+
+#include "projection.h"
+#include "view.h"
+#include "vodr.h"
+
+typedef struct candidate {
+    vox_box box;
+    size_t brick;   /* number of the brick, x fastest */
+    px_rect bound;  /* its fragments lie within */
+    int32_t k0, k1; /* and on slices [k0, k1) */
+} candidate;
+
+typedef struct volume_divider {
+    const vodr_view *view;
+    projection projection;
+    int32_t dims_vox[3];
+    int32_t edge_vox;  /* of a brick; 0 when the volume is whole */
+    int32_t bricks[3]; /* along each axis */
+    int32_t nest[3];   /* axes of the three loops, outermost first */
+    int32_t *order[3]; /* indices along an axis, in the order visited */
+    uint8_t *empty;    /* by brick number; NULL unless skip_empty */
+    uint64_t empty_bricks;
+    int32_t tile_px; /* edge of a screen tile; 0 when the screen is not cut */
+    px_rect tile;    /* the current one, or the whole frame */
+    int32_t at[3];   /* loop counters, outermost first */
+    bool started;
+} volume_divider;
+
+/* The brick's edge that a machine uses for a view, in voxels (the paper's section 3.1):
+ * its own `brick`, else the largest that its footprint and texture memory allow, at least brick_min. 0 for `whole`. */
+int32_t volume_divider_edge(const vodr_machine *m, const vodr_view *view);
+
+/* Prepares the walk. `empty` says whether densities in a range are transparent, for skip_empty:
+ * transparent_to[lo] >= hi exactly when every density of [lo, hi] is. VODR_INVALID when a brick with its border does
+ * not fit texture memory. Free with volume_divider_finish() in either case. */
+vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
+                                 const vodr_view *view, const int32_t *transparent_to, vodr_error *error);
+
+/* The next candidate in visibility order; false after the last. */
+bool volume_divider_next(volume_divider *d, candidate *c);
+
+/* How far the walk is, 0 to 1. */
+double volume_divider_done(const volume_divider *d);
+
+void volume_divider_finish(volume_divider *d);
+
+#endif

@@ -1,0 +1,43 @@
+#include "voxels.h"
+
+vox_box voxels_reach(const int32_t dims_vox[3], const vox_box *box, int32_t border)
+{
+    vox_box reach;
+    for (int c = 0; c < 3; c++) {
+        reach.lo[c] = box->lo[c] > border ? box->lo[c] - border : 0;
+        reach.hi[c] = box->hi[c] < dims_vox[c] - border ? box->hi[c] + border : dims_vox[c];
+    }
+    return reach;
+}
+
+void voxels_row(const vodr_volume *volume, int32_t density_bits, size_t first, int32_t count, uint16_t *densities)
+{
+    uint16_t limit = (uint16_t)((1 << density_bits) - 1);
+    if (volume->voxel_bytes == 2) {
+        const uint16_t *voxel = (const uint16_t *)volume->voxels + first;
+        for (int32_t i = 0; i < count; i++)
+            densities[i] = voxel[i] < limit ? voxel[i] : limit;
+        return;
+    }
+    const uint8_t *voxel = (const uint8_t *)volume->voxels + first;
+    for (int32_t i = 0; i < count; i++)
+        densities[i] = volume->map ? volume->map[voxel[i]] : voxel[i];
+}
+
+void voxels_range(const vodr_volume *volume, int32_t density_bits, const vox_box *box, int32_t *min, int32_t *max)
+{
+    enum { CHUNK = 256 };
+    uint16_t row[CHUNK];
+    *min = INT32_MAX;
+    *max = -1;
+    for (int32_t z = box->lo[2]; z < box->hi[2]; z++)
+        for (int32_t y = box->lo[1]; y < box->hi[1]; y++)
+            for (int32_t x = box->lo[0]; x < box->hi[0]; x += CHUNK) {
+                int32_t n = box->hi[0] - x < CHUNK ? box->hi[0] - x : CHUNK;
+                voxels_row(volume, density_bits, voxel_index(volume->dims_vox, x, y, z), n, row);
+                for (int32_t i = 0; i < n; i++) {
+                    *min = row[i] < *min ? row[i] : *min;
+                    *max = row[i] > *max ? row[i] : *max;
+                }
+            }
+}
