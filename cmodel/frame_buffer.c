@@ -6,7 +6,8 @@
 
 #include "error.h"
 
-vodr_status frame_buffer_start(frame_buffer *f, const vodr_machine *m, const vodr_view *view, vodr_error *error)
+vodr_status frame_buffer_start(frame_buffer *f, const vodr_machine *m, const vodr_view *view, bool picture,
+                               vodr_error *error)
 {
     *f = (frame_buffer){.layout = fb_layout_of(m, view->width_px, view->height_px),
                         .width_px = view->width_px,
@@ -14,6 +15,8 @@ vodr_status frame_buffer_start(frame_buffer *f, const vodr_machine *m, const vod
                         .line_pixels = line_pixels(m),
                         .line_bytes = line_bytes(m),
                         .pixel_bytes = pixel_bytes(m)};
+    if (!picture)
+        return VODR_OK;
     f->pixels = calloc((size_t)f->layout.lines * (size_t)f->line_pixels, sizeof *f->pixels);
     if (!f->pixels)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a frame buffer of %" PRId32 "x%" PRId32 " pixels",
@@ -28,20 +31,23 @@ static vodr_rgba *line_at(const frame_buffer *f, int64_t line)
 
 void frame_buffer_read_line(frame_buffer *f, int64_t line, vodr_rgba *pixels)
 {
-    memcpy(pixels, line_at(f, line), (size_t)f->line_pixels * sizeof *pixels);
+    if (f->pixels)
+        memcpy(pixels, line_at(f, line), (size_t)f->line_pixels * sizeof *pixels);
     f->read_bytes += (uint64_t)f->line_bytes;
 }
 
 void frame_buffer_write_line(frame_buffer *f, int64_t line, const vodr_rgba *pixels)
 {
-    memcpy(line_at(f, line), pixels, (size_t)f->line_pixels * sizeof *pixels);
+    if (f->pixels)
+        memcpy(line_at(f, line), pixels, (size_t)f->line_pixels * sizeof *pixels);
     f->write_bytes += (uint64_t)f->line_bytes;
 }
 
 void frame_buffer_write_pixels(frame_buffer *f, int64_t line, int32_t offset, const vodr_rgba *pixels, int32_t count,
                                int32_t written)
 {
-    memcpy(line_at(f, line) + offset, pixels, (size_t)count * sizeof *pixels);
+    if (f->pixels)
+        memcpy(line_at(f, line) + offset, pixels, (size_t)count * sizeof *pixels);
     f->write_bytes += (uint64_t)written * (uint64_t)f->pixel_bytes;
 }
 

@@ -9,12 +9,14 @@
 typedef struct frame_buffer {
     fb_layout layout;
     int32_t width_px, height_px, line_pixels, line_bytes, pixel_bytes;
-    vodr_rgba *pixels; /* line after line */
+    vodr_rgba *pixels; /* line after line; NULL when only bytes are counted, and then lines are not touched either */
     uint64_t read_bytes, write_bytes;
 } frame_buffer;
 
-/* A frame buffer of zeros. Free with frame_buffer_finish() in either case. */
-vodr_status frame_buffer_start(frame_buffer *f, const vodr_machine *m, const vodr_view *view, vodr_error *error);
+/* A frame buffer of zeros, or with `picture` false one that only counts. Free with frame_buffer_finish() in either
+ * case. */
+vodr_status frame_buffer_start(frame_buffer *f, const vodr_machine *m, const vodr_view *view, bool picture,
+                               vodr_error *error);
 
 void frame_buffer_read_line(frame_buffer *f, int64_t line, vodr_rgba *pixels);
 void frame_buffer_write_line(frame_buffer *f, int64_t line, const vodr_rgba *pixels);

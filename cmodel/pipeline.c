@@ -1,31 +1,13 @@
 /* pipeline.c - joins the blocks, down Figure 2 of the paper: divider, slice generator, rasterizer, texture unit, alpha
  * blender, pixel cache, frame buffer. One fragment after the other, in the order the machine draws them. */
+#include "pipeline.h"
+
 #include <stdlib.h>
 
-#include "alpha_blender.h"
 #include "error.h"
-#include "frame_buffer.h"
 #include "layout.h"
-#include "pixel_cache.h"
 #include "rasterizer.h"
 #include "slice_generator.h"
-#include "texture_unit.h"
-#include "vodr.h"
-#include "volume_divider.h"
-
-typedef struct pipeline {
-    const vodr_machine *machine;
-    const vodr_view *view;
-    volume_divider divider;
-    texture_unit texture;
-    alpha_blender blender;
-    pixel_cache cache;
-    frame_buffer memory;
-    uint16_t *densities;  /* of a span */
-    vodr_rgba *fragments; /* likewise */
-    uint8_t *seen;        /* by brick: visited before */
-    vodr_counters counters;
-} pipeline;
 
 /* What one visit covers. */
 typedef struct footprint {
@@ -46,12 +28,14 @@ static void write_line(void *context, int64_t line, const vodr_rgba *pixels)
 /* The fragments [from, to) of a span: one line, none of them dead. */
 static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
 {
-    int32_t x = s->x0 + from, count = to - from;
+    int32_t x = s->x0 + from, count = to - from, written = count;
     int64_t line = line_number(&p->memory.layout, x, s->y);
     int32_t offset = line_offset(&p->memory.layout, x, s->y);
-    vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count) + offset;
-    int32_t written =
-        alpha_blender_run(&p->blender, p->fragments + from, count, pixels, &p->counters.terminated_fragments);
+    vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count);
+    if (p->picture) {
+        pixels += offset;
+        written = alpha_blender_run(&p->blender, p->fragments + from, count, pixels, &p->counters.terminated_fragments);
+    }
     if (!written)
         return;
     pixel_cache_written(&p->cache);
@@ -59,23 +43,47 @@ static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
         frame_buffer_write_pixels(&p->memory, line, offset, pixels, count, written);
 }
 
+/* Where the line ends that holds fragment `from` of a span, cut to the span. */
+static int32_t run_end(const pipeline *p, const span *s, int32_t from)
+{
+    int32_t width = p->memory.layout.line_w_px, end = ((s->x0 + from) / width + 1) * width;
+    return (end < s->x1 ? end : s->x1) - s->x0;
+}
+
+static void shade_span(pipeline *p, const brick_slice *slice, const span *s)
+{
+    texture_unit_filter(&p->texture, slice, s, p->densities);
+    for (int32_t i = 0; i < s->x1 - s->x0; i++)
+        p->fragments[i] = p->texture.colours[p->densities[i]];
+}
+
+/* Drops the dead fragments of [from, to) and blends the runs between them. */
+static void blend_living(pipeline *p, const span *s, int32_t from, int32_t to)
+{
+    while (from < to) {
+        int32_t end = from;
+        while (end < to && !p->texture.dead[p->densities[end]])
+            end++;
+        if (end > from)
+            blend_run(p, s, from, end);
+        for (from = end; from < to && p->texture.dead[p->densities[from]]; from++)
+            p->counters.killed_fragments++;
+    }
+}
+
 static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
 {
-    int32_t count = s->x1 - s->x0, line_w = p->memory.layout.line_w_px;
+    int32_t count = s->x1 - s->x0;
     p->counters.fragments += (uint64_t)count;
-    p->counters.texture_load_bytes += texture_unit_filter(&p->texture, slice, s, p->densities);
-    for (int32_t i = 0; i < count; i++)
-        p->fragments[i] = p->texture.colours[p->densities[i]];
-    for (int32_t from = 0; from < count;) {
-        int32_t to = from, line_end = ((s->x0 + from) / line_w + 1) * line_w - s->x0;
-        if (line_end > count)
-            line_end = count;
-        while (to < line_end && !p->texture.dead[p->densities[to]])
-            to++;
-        if (to > from)
+    p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
+    if (p->picture)
+        shade_span(p, slice, s);
+    for (int32_t from = 0, to; from < count; from = to) {
+        to = run_end(p, s, from);
+        if (p->machine->kill_transparent)
+            blend_living(p, s, from, to);
+        else
             blend_run(p, s, from, to);
-        for (from = to; from < line_end && p->texture.dead[p->densities[from]]; from++)
-            p->counters.killed_fragments++;
     }
 }
 
@@ -103,7 +111,8 @@ static void draw_candidate(pipeline *p, const candidate *c)
     footprint covered = {.px = {INT32_MAX, INT32_MAX, 0, 0}};
     brick_slice slice;
     while (slice_generator_next(&slices, &slice)) {
-        rasterizer rows = rasterizer_start(&slice, &c->bound);
+        rasterizer rows;
+        rasterizer_start(&rows, &slice, &c->bound);
         span s;
         bool any = false;
         while (rasterizer_next(&rows, &s)) {
@@ -139,48 +148,60 @@ static vodr_status check_volume(const vodr_volume *v, const vodr_machine *m, vod
     return VODR_OK;
 }
 
-static vodr_status start(pipeline *p, const vodr_volume *volume, const vodr_table *table, vodr_error *error)
+static vodr_status check_inputs(const vodr_machine *m, const vodr_volume *volume, const vodr_view *view,
+                                vodr_error *error)
 {
-    const vodr_machine *m = p->machine;
     vodr_status status = vodr_machine_check(m, error);
     if (status == VODR_OK)
         status = check_volume(volume, m, error);
     if (status == VODR_OK)
-        status = vodr_view_check(p->view, volume->dims_vox, error);
+        status = vodr_view_check(view, volume->dims_vox, error);
+    return status;
+}
+
+static vodr_status start_blocks(pipeline *p, const vodr_volume *volume, const vodr_table *table, vodr_error *error)
+{
+    const vodr_machine *m = p->machine;
+    px_rect window = {0, 0, p->view->width_px, p->view->height_px};
+    p->blender = alpha_blender_of(m);
+    vodr_status status = texture_unit_start(&p->texture, m, volume, table, p->view, error);
     if (status == VODR_OK)
-        status = texture_unit_start(&p->texture, m, volume, table, p->view, error);
-    if (status == VODR_OK)
-        status = volume_divider_start(&p->divider, m, volume, p->view, p->texture.transparent_to, error);
-    if (status == VODR_OK)
+        status = volume_divider_start(&p->divider, m, volume, p->view, &window, p->texture.transparent_to, error);
+    if (status == VODR_OK && p->picture)
         status = texture_unit_reserve(&p->texture, p->divider.edge_vox, error);
     if (status == VODR_OK)
-        status = frame_buffer_start(&p->memory, m, p->view, error);
+        status = frame_buffer_start(&p->memory, m, p->view, p->picture, error);
+    cache_memory memory = {.context = &p->memory, .read_line = read_line, .write_line = write_line};
+    if (status == VODR_OK)
+        status = pixel_cache_start(&p->cache, m, p->memory.layout.lines, p->picture, memory, error);
+    return status;
+}
+
+vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
+                           const vodr_view *view, bool picture, vodr_error *error)
+{
+    *p = (pipeline){.machine = machine, .view = view, .picture = picture};
+    vodr_status status = check_inputs(machine, volume, view, error);
+    if (status == VODR_OK)
+        status = start_blocks(p, volume, table, error);
     if (status != VODR_OK)
         return status;
-    p->blender = alpha_blender_of(m);
-    status = pixel_cache_start(&p->cache, m, p->memory.layout.lines,
-                               (cache_memory){.context = &p->memory, .read_line = read_line, .write_line = write_line},
-                               error);
-    size_t width = (size_t)p->view->width_px, bricks = 1;
+    size_t width = (size_t)view->width_px, bricks = 1;
     for (int c = 0; c < 3; c++)
         bricks *= (size_t)p->divider.bricks[c];
     p->densities = malloc(width * sizeof *p->densities);
     p->fragments = malloc(width * sizeof *p->fragments);
     p->seen = calloc(bricks, 1);
-    if (status == VODR_OK && (!p->densities || !p->fragments || !p->seen))
-        status = vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of %zu bricks", bricks);
-    return status;
+    if (!p->densities || !p->fragments || !p->seen)
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of %zu bricks", bricks);
+    p->counters.tile_px = tile_px(machine);
+    p->counters.brick_vox = p->divider.edge_vox;
+    return VODR_OK;
 }
 
-static void finish(pipeline *p)
+bool pipeline_counts_alone(const vodr_machine *machine)
 {
-    free(p->densities);
-    free(p->fragments);
-    free(p->seen);
-    pixel_cache_finish(&p->cache);
-    frame_buffer_finish(&p->memory);
-    volume_divider_finish(&p->divider);
-    texture_unit_finish(&p->texture);
+    return machine->blend == VODR_BLEND_OVER && !machine->kill_transparent;
 }
 
 static void gather_counters(pipeline *p)
@@ -195,37 +216,31 @@ static void gather_counters(pipeline *p)
     n->skipped_bricks = p->divider.empty_bricks;
 }
 
-vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                        const vodr_view *view, const vodr_options *options, vodr_frame *frame, vodr_counters *counters,
-                        vodr_error *error)
+bool pipeline_step(pipeline *p)
 {
-    pipeline p = {.machine = machine, .view = view};
-    *frame = (vodr_frame){0};
-    *counters = (vodr_counters){0};
-    vodr_status status = start(&p, volume, table, error);
-    if (status == VODR_OK) {
-        p.counters.tile_px = tile_px(machine);
-        p.counters.brick_vox = p.divider.edge_vox;
-        candidate c;
-        while (volume_divider_next(&p.divider, &c)) {
-            draw_candidate(&p, &c);
-            if (options && options->progress)
-                options->progress(options->progress_context, volume_divider_done(&p.divider));
-        }
-        pixel_cache_flush(&p.cache);
-        const vodr_rgba *readout = machine->blend == VODR_BLEND_MIP ? p.texture.readout : NULL;
-        status = frame_buffer_readout(&p.memory, machine, readout, frame, error);
+    candidate c;
+    if (volume_divider_next(&p->divider, &c)) {
+        draw_candidate(p, &c);
+        return true;
     }
-    if (status == VODR_OK) {
-        gather_counters(&p);
-        *counters = p.counters;
-    }
-    finish(&p);
-    return status;
+    pixel_cache_flush(&p->cache);
+    gather_counters(p);
+    return false;
 }
 
-void vodr_frame_free(vodr_frame *frame)
+vodr_status pipeline_readout(const pipeline *p, vodr_frame *frame, vodr_error *error)
 {
-    free(frame->pixels);
-    *frame = (vodr_frame){0};
+    const vodr_rgba *readout = p->machine->blend == VODR_BLEND_MIP ? p->texture.readout : NULL;
+    return frame_buffer_readout(&p->memory, p->machine, readout, frame, error);
+}
+
+void pipeline_finish(pipeline *p)
+{
+    free(p->densities);
+    free(p->fragments);
+    free(p->seen);
+    pixel_cache_finish(&p->cache);
+    frame_buffer_finish(&p->memory);
+    volume_divider_finish(&p->divider);
+    texture_unit_finish(&p->texture);
 }

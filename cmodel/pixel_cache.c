@@ -9,8 +9,8 @@
 
 enum { LFSR_SEED = 0xACE1, LFSR_TAPS = 0xB400 };
 
-vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t frame_lines, cache_memory memory,
-                              vodr_error *error)
+vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t frame_lines, bool picture,
+                              cache_memory memory, vodr_error *error)
 {
     *c = (pixel_cache){.memory = memory,
                        .sets = cache_sets(m),
@@ -25,9 +25,9 @@ vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t fra
         c->set_bits++;
     size_t lines = (size_t)c->sets * (size_t)c->ways;
     c->lines = malloc(lines * sizeof *c->lines);
-    c->pixels = malloc(lines * (size_t)c->line_pixels * sizeof *c->pixels);
+    c->pixels = picture ? malloc(lines * (size_t)c->line_pixels * sizeof *c->pixels) : NULL;
     c->touched = calloc(c->clear_on_first_touch ? (size_t)frame_lines : 1, 1);
-    if (!c->lines || !c->pixels || !c->touched)
+    if (!c->lines || (picture && !c->pixels) || !c->touched)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a pixel cache of %zu lines", lines);
     for (size_t i = 0; i < lines; i++)
         c->lines[i] = (cache_line){.number = -1};
@@ -47,6 +47,8 @@ static int32_t set_of(const pixel_cache *c, int64_t line)
 
 static vodr_rgba *pixels_of(const pixel_cache *c, const cache_line *line)
 {
+    if (!c->pixels)
+        return NULL;
     return c->pixels + (size_t)(line - c->lines) * (size_t)c->line_pixels;
 }
 
@@ -85,7 +87,7 @@ static void fill(pixel_cache *c, cache_line *line, int64_t number)
     *line = (cache_line){.number = number, .stamp = c->clock};
     if (c->clear_on_first_touch && !c->touched[number]) {
         c->touched[number] = 1;
-        for (int32_t i = 0; i < c->line_pixels; i++)
+        for (int32_t i = 0; pixels && i < c->line_pixels; i++)
             pixels[i] = (vodr_rgba){0};
     } else {
         c->memory.read_line(c->memory.context, number, pixels);

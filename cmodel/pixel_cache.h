@@ -25,7 +25,7 @@ typedef struct pixel_cache {
     bool xor_index, through, clear_on_first_touch;
     vodr_replacement replacement;
     cache_line *lines; /* set after set */
-    vodr_rgba *pixels; /* of each line */
+    vodr_rgba *pixels; /* of each line; NULL when only tags are kept */
     uint8_t *touched;  /* by line number: whether it missed before in this frame; clear_on_first_touch only */
     uint64_t clock;
     uint32_t lfsr;
@@ -33,11 +33,13 @@ typedef struct pixel_cache {
     uint64_t hits, misses, evictions, writebacks;
 } pixel_cache;
 
-/* An empty cache over a frame buffer of `frame_lines` lines. Free with pixel_cache_finish() in either case. */
-vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t frame_lines, cache_memory memory,
-                              vodr_error *error);
+/* An empty cache over a frame buffer of `frame_lines` lines; with `picture` false it keeps tags only. Free with
+ * pixel_cache_finish() in either case. */
+vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t frame_lines, bool picture,
+                              cache_memory memory, vodr_error *error);
 
-/* `count` accesses in a row to one line. Returns the line's pixels, valid until the next access. */
+/* `count` accesses in a row to one line. Returns the line's pixels, valid until the next access; NULL without a
+ * picture. */
 vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count);
 
 /* The line of the last access was written. */

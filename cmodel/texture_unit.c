@@ -112,10 +112,10 @@ uint64_t texture_unit_load(texture_unit *t, size_t brick, const vox_box *box)
     const int32_t *lo = b->region.lo, *hi = b->region.hi;
     int32_t width = hi[0] - lo[0];
     uint16_t *row = b->densities;
-    for (int32_t z = lo[2]; z < hi[2]; z++)
+    for (int32_t z = lo[2]; row && z < hi[2]; z++)
         for (int32_t y = lo[1]; y < hi[1]; y++, row += width)
             voxels_row(t->volume, t->density_bits, voxel_index(t->volume->dims_vox, lo[0], y, z), width, row);
-    return (uint64_t)(row - b->densities) * (uint64_t)t->voxel_bytes;
+    return (uint64_t)width * (uint64_t)(hi[1] - lo[1]) * (uint64_t)(hi[2] - lo[2]) * (uint64_t)t->voxel_bytes;
 }
 
 /* What the fetch stage reads: texture memory, or the volume itself. Indices are inside the region. */
@@ -185,7 +185,12 @@ static inline void filter_span(const texture_unit *t, bool whole, bool linear, c
     }
 }
 
-uint64_t texture_unit_filter(const texture_unit *t, const brick_slice *slice, const span *s, uint16_t *densities)
+uint64_t texture_unit_fetched(const texture_unit *t, int32_t count)
+{
+    return t->whole ? (uint64_t)count * (t->filter == VODR_FILTER_LINEAR ? 8 : 1) * (uint64_t)t->voxel_bytes : 0;
+}
+
+void texture_unit_filter(const texture_unit *t, const brick_slice *slice, const span *s, uint16_t *densities)
 {
     bool linear = t->filter == VODR_FILTER_LINEAR;
     if (t->whole && linear)
@@ -196,7 +201,6 @@ uint64_t texture_unit_filter(const texture_unit *t, const brick_slice *slice, co
         filter_span(t, false, true, slice, s, densities);
     else
         filter_span(t, false, false, slice, s, densities);
-    return t->whole ? (uint64_t)(s->x1 - s->x0) * (linear ? 8 : 1) * (uint64_t)t->voxel_bytes : 0;
 }
 
 void texture_unit_finish(texture_unit *t)

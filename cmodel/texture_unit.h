@@ -13,7 +13,7 @@ typedef struct texture_buffer {
     size_t brick; /* which one it holds */
     bool valid;
     vox_box region;      /* the voxels in it, clipped to the volume */
-    uint16_t *densities; /* x fastest */
+    uint16_t *densities; /* x fastest; NULL when only loads are counted */
 } texture_buffer;
 
 typedef struct texture_unit {
@@ -36,14 +36,18 @@ typedef struct texture_unit {
 vodr_status texture_unit_start(texture_unit *t, const vodr_machine *m, const vodr_volume *volume,
                                const vodr_table *table, const vodr_view *view, vodr_error *error);
 
-/* Gives the buffers room for bricks of this edge; 0: the volume is drawn whole and needs none. */
+/* Gives the buffers room for bricks of this edge; 0: the volume is drawn whole and needs none. Without, loads are
+ * counted and nothing can be filtered. */
 vodr_status texture_unit_reserve(texture_unit *t, int32_t edge_vox, vodr_error *error);
 
 /* Makes `brick` the current one; returns the bytes loaded, 0 when it was still there or the volume is whole. */
 uint64_t texture_unit_load(texture_unit *t, size_t brick, const vox_box *box);
 
-/* Filters the fragments of a span: densities[0 .. x1-x0-1]. Returns the bytes fetched from external memory (whole). */
-uint64_t texture_unit_filter(const texture_unit *t, const brick_slice *slice, const span *s, uint16_t *densities);
+/* Bytes that `count` fragments fetch from external memory: 0 unless the volume is drawn whole. */
+uint64_t texture_unit_fetched(const texture_unit *t, int32_t count);
+
+/* Filters the fragments of a span: densities[0 .. x1-x0-1]. */
+void texture_unit_filter(const texture_unit *t, const brick_slice *slice, const span *s, uint16_t *densities);
 
 void texture_unit_finish(texture_unit *t);
 

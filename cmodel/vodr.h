@@ -138,9 +138,26 @@ typedef struct vodr_counters {
     int32_t tile_px;         /* T */
 } vodr_counters;
 
-/* How to compute the frame; none of it changes a byte or a count. */
+/* Which program draws the frame. */
+typedef enum vodr_path {
+    VODR_PATH_FAST,   /* blocks joined in one loop, where the machine allows it (docs/fast-path.md), else block by block
+                       */
+    VODR_PATH_BLOCKS, /* block by block, one fragment after the other: the slow truth */
+} vodr_path;
+
+/* Which instructions the fast path may use; one the computer lacks falls back to the next lower. */
+typedef enum vodr_simd {
+    VODR_SIMD_BEST,
+    VODR_SIMD_PORTABLE,
+    VODR_SIMD_AVX2,
+    VODR_SIMD_AVX512,
+} vodr_simd;
+
+/* How to compute the frame; none of it changes a byte or a count. All-zero is a good choice. */
 typedef struct vodr_options {
     int32_t threads; /* at least 1; 0 = as many as the machine has cores */
+    vodr_path path;
+    vodr_simd simd;
     /* Called now and then from the calling thread with the done share, 0 to 1; NULL for silence. */
     void (*progress)(void *context, double done);
     void *progress_context;

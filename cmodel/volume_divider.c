@@ -137,9 +137,11 @@ static void find_empty(volume_divider *d, const vodr_machine *m, const vodr_volu
 }
 
 vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
-                                 const vodr_view *view, const int32_t *transparent_to, vodr_error *error)
+                                 const vodr_view *view, const px_rect *window, const int32_t *transparent_to,
+                                 vodr_error *error)
 {
-    *d = (volume_divider){.view = view, .projection = projection_of(view), .edge_vox = volume_divider_edge(m, view)};
+    *d = (volume_divider){
+        .view = view, .projection = projection_of(view), .edge_vox = volume_divider_edge(m, view), .window = *window};
     size_t total = 1;
     for (int c = 0; c < 3; c++) {
         d->dims_vox[c] = volume->dims_vox[c];
@@ -172,20 +174,21 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
 /* The first or the next tile in row-major order; false after the last. */
 static bool next_tile(volume_divider *d)
 {
-    int32_t width = d->view->width_px, height = d->view->height_px;
-    int32_t w = d->tile_px ? d->tile_px : width, h = d->tile_px ? d->tile_px : height, x = 0, y = 0;
+    const px_rect *w = &d->window;
+    int32_t width = d->tile_px ? d->tile_px : w->x1 - w->x0, height = d->tile_px ? d->tile_px : w->y1 - w->y0;
+    int32_t x = w->x0, y = w->y0;
     if (d->started) {
-        x = d->tile.x0 + w;
+        x = d->tile.x0 + width;
         y = d->tile.y0;
-        if (x >= width) {
-            x = 0;
-            y += h;
+        if (x >= w->x1) {
+            x = w->x0;
+            y += height;
         }
     }
-    if (y >= height)
+    if (y >= w->y1)
         return false;
     d->started = true;
-    d->tile = (px_rect){x, y, x + w < width ? x + w : width, y + h < height ? y + h : height};
+    d->tile = (px_rect){x, y, x + width < w->x1 ? x + width : w->x1, y + height < w->y1 ? y + height : w->y1};
     d->at[0] = d->at[1] = d->at[2] = 0;
     return true;
 }
@@ -250,9 +253,10 @@ double volume_divider_done(const volume_divider *d)
     }
     if (!d->tile_px)
         return inner;
-    double rows = ceil_div32(d->view->height_px, d->tile_px), columns = ceil_div32(d->view->width_px, d->tile_px);
-    double tile = (double)(d->tile.y0 / d->tile_px) * columns + d->tile.x0 / d->tile_px;
-    return (tile + inner) / (rows * columns);
+    const px_rect *w = &d->window;
+    double rows = ceil_div32(w->y1 - w->y0, d->tile_px), columns = ceil_div32(w->x1 - w->x0, d->tile_px);
+    int32_t row = (d->tile.y0 - w->y0) / d->tile_px, column = (d->tile.x0 - w->x0) / d->tile_px;
+    return (row * columns + column + inner) / (rows * columns);
 }
 
 void volume_divider_finish(volume_divider *d)

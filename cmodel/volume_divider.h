@@ -27,8 +27,9 @@ typedef struct volume_divider {
     int32_t *order[3]; /* indices along an axis, in the order visited */
     uint8_t *empty;    /* by brick number; NULL unless skip_empty */
     uint64_t empty_bricks;
-    int32_t tile_px; /* edge of a screen tile; 0 when the screen is not cut */
-    px_rect tile;    /* the current one, or the whole frame */
+    int32_t tile_px; /* edge of a screen tile; 0 when the window is not cut */
+    px_rect tile;    /* the current one, or the whole window */
+    px_rect window;  /* the part of the frame that is drawn */
     int32_t at[3];   /* loop counters, outermost first */
     bool started;
 } volume_divider;
@@ -37,11 +38,12 @@ typedef struct volume_divider {
  * its own `brick`, else the largest that its footprint and texture memory allow, at least brick_min. 0 for `whole`. */
 int32_t volume_divider_edge(const vodr_machine *m, const vodr_view *view);
 
-/* Prepares the walk. `empty` says whether densities in a range are transparent, for skip_empty:
- * transparent_to[lo] >= hi exactly when every density of [lo, hi] is. VODR_INVALID when a brick with its border does
- * not fit texture memory. Free with volume_divider_finish() in either case. */
+/* Prepares the walk over the fragments within `window`, a part of the frame. For skip_empty, transparent_to[lo] >= hi
+ * exactly when every density of [lo, hi] is transparent. VODR_INVALID when a brick with its border does not fit texture
+ * memory. Free with volume_divider_finish() in either case. */
 vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
-                                 const vodr_view *view, const int32_t *transparent_to, vodr_error *error);
+                                 const vodr_view *view, const px_rect *window, const int32_t *transparent_to,
+                                 vodr_error *error);
 
 /* The next candidate in visibility order; false after the last. */
 bool volume_divider_next(volume_divider *d, candidate *c);

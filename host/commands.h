@@ -1,0 +1,10 @@
+/* commands.h - the subcommands of vodr; main.c picks one by its name. */
+#ifndef HOST_COMMANDS_H
+#define HOST_COMMANDS_H
+
+#include "host.h"
+#include "options.h"
+
+extern const command command_render, command_compare, command_info, command_machine;
+
+#endif

@@ -1,0 +1,166 @@
+/* info.c - `vodr info`: what a volume file holds, and how to look at it. */
+#include "commands.h"
+#include "json.h"
+#include "orientation.h"
+#include "transfer.h"
+#include "view_options.h"
+#include "volume.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+enum { BINS = 16, BAR_CHARS = 50 };
+
+/* How many voxels lie in each of BINS equal parts of the range; `soft`: between -200 and 200, in CT soft tissue. */
+typedef struct histogram {
+    uint64_t count[BINS];
+    uint64_t soft;
+    uint64_t all;
+} histogram;
+
+static histogram histogram_of(const volume *v)
+{
+    histogram h = {.all = volume_count(v)};
+    double scale = v->max > v->min ? BINS / (v->max - v->min) : 0;
+    for (size_t i = 0; i < h.all; i++) {
+        double value = volume_value(v, i);
+        int bin = (int)((value - v->min) * scale);
+        h.count[bin < BINS ? bin : BINS - 1]++;
+        h.soft += value >= -200 && value <= 200;
+    }
+    return h;
+}
+
+/* The share of the voxels, 0 to 1, in the bins from first to last. */
+static double share(const histogram *h, int first, int last)
+{
+    uint64_t sum = 0;
+    for (int i = first; i <= last; i++)
+        sum += h->count[i];
+    return (double)sum / (double)h->all;
+}
+
+/* A CT with soft tissue has a skin. Contrast-filled vessels are the one per cent that is not dark. In MRI, tissue
+ * spreads over the lower half of the range and little lies above. */
+static const char *suggest_transfer(const volume *v, const histogram *h)
+{
+    if (volume_is_ct(v))
+        return h->soft >= h->all / 20 ? "skin-bone" : "bone";
+    if (v->max > v->min && share(h, 0, 0) >= 0.985)
+        return "vessels";
+    if (share(h, 0, 0) < 0.7 && share(h, 1, 8) >= 0.4 && share(h, 9, BINS - 1) < 0.1)
+        return "mri";
+    return "ramp";
+}
+
+static host_status suggest_window(const volume *v, const char *name, double *lo, double *hi, host_error *error)
+{
+    transfer t;
+    host_status status = transfer_open(name, volume_is_ct(v), &t, error);
+    if (status != HOST_OK)
+        return status;
+    bool own = volume_is_ct(v) && t.has_ct_window;
+    *lo = own ? t.ct_lo : v->min;
+    *hi = own ? t.ct_hi : v->max;
+    transfer_close(&t);
+    return HOST_OK;
+}
+
+static void print_text(const volume *v, const histogram *h, const char *tf, double lo, double hi)
+{
+    char words[64];
+    orientation_words(v, words, sizeof words);
+    printf("file         %s\nformat       %s\n", v->path, v->format);
+    printf("voxels       %" PRId32 "x%" PRId32 "x%" PRId32 "\n", v->dims_vox[0], v->dims_vox[1], v->dims_vox[2]);
+    printf("type         %s\n", volume_type_name(v->type));
+    printf("spacing      %.9g %.9g %.9g\n", v->spacing[0], v->spacing[1], v->spacing[2]);
+    printf("orientation  %s\n", words);
+    printf("range        %.17g to %.17g%s\n", v->min, v->max, volume_is_ct(v) ? " (CT, Hounsfield units)" : "");
+    printf("nonfinite    %" PRIu64 "\n", v->nonfinite);
+    printf("suggested    --tf %s --window %.9g:%.9g\n\n", tf, lo, hi);
+    double width = (v->max - v->min) / BINS, largest = 0;
+    for (int i = 0; i < BINS; i++)
+        largest = share(h, i, i) > largest ? share(h, i, i) : largest;
+    for (int i = 0; i < BINS; i++) {
+        static const char bar[BAR_CHARS + 1] = "##################################################";
+        int length = (int)(share(h, i, i) / largest * BAR_CHARS + 0.5);
+        printf("%12.6g %6.2f %%%s%.*s\n", v->min + i * width, 100 * share(h, i, i), length ? " " : "", length, bar);
+    }
+}
+
+static host_status print_json(const volume *v, const histogram *h, const char *tf, double lo, double hi,
+                              host_error *error)
+{
+    char words[64];
+    orientation_words(v, words, sizeof words);
+    json_t *counts = json_array();
+    for (int i = 0; i < BINS; i++)
+        json_array_append_new(counts, json_integer((json_int_t)h->count[i]));
+    json_t *root =
+        json_pack("{s:s, s:o, s:s, s:[i,i,i], s:s, s:[f,f,f], s:{s:[i,i,i], s:[i,i,i], s:s}, s:f, s:f, s:I, "
+                  "s:b, s:s, s:[f,f], s:o}",
+                  "schema", "vodr-info-1", "file", json_text(v->path), "format", v->format, "dims", v->dims_vox[0],
+                  v->dims_vox[1], v->dims_vox[2], "type", volume_type_name(v->type), "spacing", v->spacing[0],
+                  v->spacing[1], v->spacing[2], "orientation", "axis", v->axis[0], v->axis[1], v->axis[2], "sign",
+                  v->sign[0], v->sign[1], v->sign[2], "words", words, "min", v->min, "max", v->max, "nonfinite",
+                  (json_int_t)v->nonfinite, "ct", volume_is_ct(v), "tf", tf, "window", lo, hi, "histogram", counts);
+    if (!root)
+        return host_fail(error, HOST_ENVIRONMENT, "%s: no memory for the JSON text", v->path);
+    json_dumpf(root, stdout, JSON_INDENT(2));
+    putchar('\n');
+    json_decref(root);
+    return HOST_OK;
+}
+
+static host_status print_volume(const volume *v, bool json, host_error *error)
+{
+    double lo, hi;
+    histogram h = histogram_of(v);
+    const char *tf = suggest_transfer(v, &h);
+    host_status status = suggest_window(v, tf, &lo, &hi, error);
+    if (status != HOST_OK)
+        return status;
+    if (json)
+        status = print_json(v, &h, tf, lo, hi, error);
+    else
+        print_text(v, &h, tf, lo, hi);
+    return status;
+}
+
+static host_status set_json(void *target, const option *o, const char *value, host_error *error)
+{
+    (void)o, (void)value, (void)error;
+    *(bool *)target = true;
+    return HOST_OK;
+}
+
+static const option info_rows[] = {{"json", 0, NULL, false, set_json, "print JSON"}};
+static const option_table info_options = {"Output:", info_rows, 1};
+
+static host_status info_run(int argc, char **argv, host_error *error)
+{
+    volume_options options = {0};
+    bool json = false, help;
+    const char *operands[OPTION_OPERANDS];
+    void *const targets[] = {&options, &json};
+    volume v;
+    host_status status = options_parse(&command_info, argc, argv, targets, operands, &help, error);
+    if (status != HOST_OK || help)
+        return status;
+    status = volume_open(operands[0], &options, &v, error);
+    if (status != HOST_OK)
+        return status;
+    status = print_volume(&v, json, error);
+    volume_close(&v);
+    return status;
+}
+
+const command command_info = {
+    .name = "info",
+    .operands = {"VOLUME"},
+    .required = 1,
+    .summary = "what a volume file holds: size, type, orientation, values",
+    .example = "  vodr info head.nii.gz\n  vodr info raw.bin --dims 256x256x113 --type uint16 --endian big --json",
+    .tables = {&option_volume, &info_options},
+    .run = info_run,
+};

@@ -1,0 +1,269 @@
+/* render.c - `vodr render`: a volume through the machine into a picture, its statistics, and the machine's inputs. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "image.h"
+#include "registers.h"
+#include "stats.h"
+#include "text.h"
+#include "view_options.h"
+
+enum { PNG, RAW, STATS, REGISTERS, OUTPUTS };
+
+static const char *const output_option[OUTPUTS] = {"output", "raw", "stats", "registers"};
+
+typedef struct render_options {
+    view_options view;
+    const char *path[OUTPUTS]; /* NULL: not asked for */
+    int repeat;
+} render_options;
+
+static host_status set_output(void *target, const option *o, const char *value, host_error *error)
+{
+    (void)error;
+    render_options *options = target;
+    for (int i = 0; i < OUTPUTS; i++)
+        if (strcmp(o->name, output_option[i]) == 0)
+            options->path[i] = value;
+    return HOST_OK;
+}
+
+static host_status set_repeat(void *target, const option *o, const char *value, host_error *error)
+{
+    int64_t repeat;
+    if (!text_integer(value, 1, 1000, &repeat))
+        return option_refuse(o, value, "an integer from 1 to 1000", error);
+    ((render_options *)target)->repeat = (int)repeat;
+    return HOST_OK;
+}
+
+static const option rows[] = {
+    {"output", 'o', "OUT.png", false, set_output, "the picture, 8 or 16 bits a channel as fb_bits says"},
+    {"raw", 0, "OUT.rgba", false, set_output,
+     "the frame: rows top to bottom, premultiplied RGBA, 8 bits,\n"
+     "or 16 bits little endian"},
+    {"stats", 0, "OUT.json", false, set_output, "what the machine counted"},
+    {"registers", 0, "OUT.json", false, set_output, "what the machine was given: registers, parameters, table"},
+    {"repeat", 0, "N", false, set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
+};
+static const option_table table = {"Output (none is required):", rows, sizeof rows / sizeof *rows};
+
+/* ---- drawing ---- */
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+typedef struct progress_line {
+    double begin_s;
+    int percent; /* as shown; -1: nothing yet */
+} progress_line;
+
+/* Runs of less than a second stay silent. */
+static void show_progress(void *context, double done)
+{
+    progress_line *line = context;
+    int percent = (int)(100 * done);
+    if (percent == line->percent || now_s() - line->begin_s < 1)
+        return;
+    fprintf(stderr, "\rdrawing: %3d %%", percent);
+    line->percent = percent;
+}
+
+static int compare_times(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *times, int count)
+{
+    qsort(times, (size_t)count, sizeof *times, compare_times);
+    return (times[(count - 1) / 2] + times[count / 2]) / 2;
+}
+
+static host_status draw_once(const scene *s, const vodr_options *how, result *r, double *wall_s, host_error *error)
+{
+    vodr_error reason;
+    vodr_frame_free(&r->frame);
+    double begin_s = now_s();
+    vodr_status status =
+        vodr_render(&s->machine, &s->densities, &s->table, &s->view, how, &r->frame, &r->counters, &reason);
+    *wall_s = now_s() - begin_s;
+    if (status == VODR_OK)
+        return HOST_OK;
+    return host_fail(error, status == VODR_NO_MEMORY ? HOST_ENVIRONMENT : HOST_BAD_INPUT, "%s", reason.text);
+}
+
+/* Draws `repeat` times; the frame and counters are those of the last, all being equal. */
+static host_status draw(const scene *s, const render_options *options, result *r, host_error *error)
+{
+    progress_line line = {.begin_s = now_s(), .percent = -1};
+    vodr_options how = {.threads = options->view.threads};
+    if (isatty(STDERR_FILENO)) {
+        how.progress = show_progress;
+        how.progress_context = &line;
+    }
+    double *times = malloc((size_t)options->repeat * sizeof *times);
+    if (!times)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory");
+    host_status status = HOST_OK;
+    for (int i = 0; status == HOST_OK && i < options->repeat; i++)
+        status = draw_once(s, &how, r, &times[i], error);
+    if (line.percent >= 0)
+        fputs("\r              \r", stderr);
+    if (status == HOST_OK)
+        r->wall_s = median(times, options->repeat);
+    r->repeat = options->repeat;
+    free(times);
+    return status == HOST_OK ? digest_frame(&r->frame, r->frame_sha256, error) : status;
+}
+
+/* ---- output ---- */
+
+static host_status check_outputs(const render_options *options, host_error *error)
+{
+    for (int i = 0; i < OUTPUTS; i++) {
+        for (int j = 0; options->path[i] && j < i; j++)
+            if (options->path[j] && strcmp(options->path[i], options->path[j]) == 0 &&
+                strncmp(options->path[i], "/dev/", 5) != 0)
+                return host_fail(error, HOST_BAD_INPUT, "--%s and --%s both name '%s'", output_option[j],
+                                 output_option[i], options->path[i]);
+        host_status status = options->path[i] ? output_check(options->path[i], error) : HOST_OK;
+        if (status != HOST_OK)
+            return status;
+    }
+    return HOST_OK;
+}
+
+static host_status write_one(int i, output *o, const render_options *options, const scene *s, const result *r,
+                             host_error *error)
+{
+    image_style style = {.alpha = options->view.alpha};
+    memcpy(style.background, options->view.background, sizeof style.background);
+    host_status status = output_open(o, options->path[i], error);
+    if (status != HOST_OK)
+        return status;
+    switch (i) {
+    case PNG: status = image_write_png(o, &r->frame, &style, error); break;
+    case RAW: status = image_write_raw(o, &r->frame, error); break;
+    case STATS: status = stats_write(o, s, &options->view, r, error); break;
+    default: status = registers_write(o, s, &options->view, error); break;
+    }
+    return status == HOST_OK ? output_close(o, error) : status;
+}
+
+/* No file takes its place before all are written. */
+static host_status write_outputs(const render_options *options, const scene *s, const result *r, host_error *error)
+{
+    output outputs[OUTPUTS] = {{0}};
+    host_status status = HOST_OK;
+    for (int i = 0; status == HOST_OK && i < OUTPUTS; i++)
+        if (options->path[i])
+            status = write_one(i, &outputs[i], options, s, r, error);
+    for (int i = 0; status == HOST_OK && i < OUTPUTS; i++)
+        status = output_commit(&outputs[i], error);
+    for (int i = 0; i < OUTPUTS; i++)
+        output_discard(&outputs[i]);
+    return status;
+}
+
+/* An integer with its thousands apart. */
+static void print_count(const char *name, uint64_t value, const char *after)
+{
+    char digits[32], grouped[48];
+    int n = snprintf(digits, sizeof digits, "%llu", (unsigned long long)value), out = 0;
+    for (int i = 0; i < n; i++) {
+        if (i && (n - i) % 3 == 0)
+            grouped[out++] = ',';
+        grouped[out++] = digits[i];
+    }
+    grouped[out] = '\0';
+    printf("%-18s %18s%s\n", name, grouped, after);
+}
+
+static void print_summary(const render_options *options, const scene *s, const result *r)
+{
+    const vodr_counters *c = &r->counters;
+    char rate[48] = "";
+    if (c->hits + c->misses)
+        snprintf(rate, sizeof rate, "  (hit rate %.4f %%)", 100 * stats_hit_rate(c));
+    printf("volume             %s, %dx%dx%d %s\n", s->volume.path, s->volume.dims_vox[0], s->volume.dims_vox[1],
+           s->volume.dims_vox[2], volume_type_name(s->volume.type));
+    printf("window, function   %g:%g, %s\n", s->window_lo, s->window_hi, s->transfer.name);
+    printf("frame              %dx%d pixels of %d slices, machine %s\n", s->view.width_px, s->view.height_px,
+           s->view.slices, s->machine_name);
+    print_count("fragments", c->fragments, "");
+    print_count("hits", c->hits, rate);
+    print_count("misses", c->misses, "");
+    print_count("write-backs", c->writebacks, "");
+    print_count("frame buffer", c->fb_read_bytes, " bytes read");
+    print_count("", c->fb_write_bytes, " bytes written");
+    print_count("texture load", c->texture_load_bytes, " bytes");
+    print_count("bricks", c->bricks, "");
+    print_count("brick visits", c->brick_visits, "");
+    printf("time               %.6f s, %.1f million fragments a second\n", r->wall_s, stats_fragments_per_s(r) / 1e6);
+    printf("frame_sha256       %s\n", r->frame_sha256);
+    for (int i = 0; i < OUTPUTS; i++)
+        if (options->path[i])
+            printf("written            %s\n", options->path[i]);
+}
+
+/* The summary stays away from a standard output that carries one of the files. */
+static bool wants_summary(const render_options *options)
+{
+    for (int i = 0; i < OUTPUTS; i++)
+        if (options->path[i] && output_is_stdout(options->path[i]))
+            return false;
+    return true;
+}
+
+static host_status render(const char *path, const render_options *options, host_error *error)
+{
+    scene s;
+    result r = {.repeat = 0};
+    host_status status = check_outputs(options, error);
+    if (status == HOST_OK)
+        status = scene_open(path, &options->view, &s, error);
+    if (status != HOST_OK)
+        return status;
+    status = draw(&s, options, &r, error);
+    bool summary = wants_summary(options);
+    if (status == HOST_OK)
+        status = write_outputs(options, &s, &r, error);
+    if (status == HOST_OK && summary)
+        print_summary(options, &s, &r);
+    vodr_frame_free(&r.frame);
+    scene_close(&s);
+    return status;
+}
+
+static host_status run(int argc, char **argv, host_error *error)
+{
+    render_options options = {.view = view_options_default(), .repeat = 1};
+    void *const targets[] = {&options, &options.view, &options.view, &options.view.volume, &options.view};
+    const char *operands[OPTION_OPERANDS];
+    bool help;
+    host_status status = options_parse(&command_render, argc, argv, targets, operands, &help, error);
+    if (status == HOST_OK && !help)
+        status = render(operands[0], &options, error);
+    view_options_free(&options.view);
+    return status;
+}
+
+const command command_render = {
+    .name = "render",
+    .operands = {"VOLUME"},
+    .required = 1,
+    .summary = "draw a volume with the machine: the picture, and what it cost",
+    .example = "  vodr render head.nrrd -o head.png --tf skin-bone --view -30,20 --size 512x512 --stats head.json",
+    .tables = {&table, &option_view, &option_machine, &option_volume, &option_picture},
+    .run = run,
+};

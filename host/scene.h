@@ -1,0 +1,30 @@
+/* scene.h - everything a frame is drawn from, made from the shared options: machine, volume, table, registers. */
+#ifndef HOST_SCENE_H
+#define HOST_SCENE_H
+
+#include "host.h"
+#include "transfer.h"
+#include "view_options.h"
+#include "vodr.h"
+#include "volume.h"
+
+/* Not to be copied: densities point into volume. */
+typedef struct scene {
+    const char *machine_name;
+    vodr_machine machine;
+    volume volume;
+    double window_lo, window_hi;
+    transfer transfer;
+    vodr_volume densities;
+    camera camera; /* its size and slices as drawn */
+    vodr_view view;
+    double depth_vox; /* distance between slices in finest voxels */
+    vodr_table table;
+    vodr_rgba *entries; /* of table, owned */
+} scene;
+
+/* Opens the volume and computes all of *s, to be closed on success. */
+host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error);
+void scene_close(scene *s);
+
+#endif

@@ -1,0 +1,46 @@
+/* transfer.h - transfer functions: built in or read from a text file, and the machine's table made from one. */
+#ifndef HOST_TRANSFER_H
+#define HOST_TRANSFER_H
+
+#include "host.h"
+#include "vodr.h"
+
+/* A control point: colour and opacity are linear between neighbouring points and constant beyond the first and last. */
+typedef struct transfer_point {
+    double value;   /* in the volume's units, or 0 to 1 over the window where the function is normalized */
+    double r, g, b; /* 0 to 1, not premultiplied */
+    double a;       /* opacity of one finest voxel of depth, 0 to 1 */
+} transfer_point;
+
+typedef struct transfer {
+    const char *name;
+    bool normalized;
+    bool builtin;
+    bool has_ct_window; /* a window of its own for CT in Hounsfield units: --window's default then */
+    double ct_lo, ct_hi;
+    transfer_point *points; /* values strictly ascending, at least one */
+    size_t count;
+} transfer;
+
+/* The built-in functions' names (ramp, bone, skin-bone, vessels, mri), NULL after the last. */
+const char *const *transfer_names(void);
+
+/* A built-in function by its name, else a text file: lines `value r g b a`, `# normalized` before the first of them
+ * where values are 0 to 1 over the window, other `#` comments and empty lines skipped. `ct` says that the volume is a
+ * CT in Hounsfield units: the built-in functions for CT then have points in Hounsfield units. */
+host_status transfer_open(const char *name_or_path, bool ct, transfer *t, host_error *error);
+void transfer_close(transfer *t);
+
+/* Colour (not premultiplied) and opacity per finest voxel at a value, exactly as the table samples it.
+ * lo, hi: the window. */
+transfer_point transfer_at(const transfer *t, double value, double lo, double hi);
+
+/* Fills entries[0 .. 2^density_bits - 1], premultiplied, of tf_bits (8 or 16) a channel. Entry i is the function at
+ * value lo + (hi - lo)*i/(2^density_bits - 1); its opacity is corrected to 1 - (1 - a)^depth, `depth` being what one
+ * slice stands for, in finest voxels; 1 leaves it as written. With `full_scale` a built-in function's opacities are
+ * first scaled so that the largest is 1 (maximum intensity: one sample stands for the whole ray). Every channel is
+ * rounded to nearest from exact colour times opacity, so none exceeds the alpha. */
+void transfer_table(const transfer *t, double lo, double hi, int density_bits, int tf_bits, double depth,
+                    bool full_scale, vodr_rgba *entries);
+
+#endif

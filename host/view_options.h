@@ -1,0 +1,42 @@
+/* view_options.h - the options that all drawing subcommands share: volume, view, machine, picture. */
+#ifndef HOST_VIEW_OPTIONS_H
+#define HOST_VIEW_OPTIONS_H
+
+#include "camera.h"
+#include "options.h"
+#include "vodr.h"
+#include "volume.h"
+
+/* One of --set, --blend, --filter, --traversal: applied to the machine in the order given. */
+typedef struct machine_override {
+    const char *option; /* for error sentences */
+    char *parameter;    /* owned */
+    const char *value;
+} machine_override;
+
+/* Strings belong to argv. */
+typedef struct view_options {
+    camera camera;
+    volume_options volume;
+    const char *transfer;
+    bool has_window;
+    double window_lo, window_hi;
+    const char *machine;
+    machine_override *overrides;
+    size_t override_count;
+    int32_t threads; /* 0 = all cores */
+    uint8_t background[3];
+    bool alpha;
+} view_options;
+
+/* Each takes a view_options as its target, except option_volume, which takes a volume_options. */
+extern const option_table option_view, option_machine, option_volume, option_picture;
+
+view_options view_options_default(void);
+void view_options_free(view_options *v);
+
+/* The machine that --machine names, a named one or a file (a name that holds a '/' or that a file has), with the
+ * overrides applied, checked that it can be built. */
+host_status view_options_machine(const view_options *v, vodr_machine *machine, host_error *error);
+
+#endif

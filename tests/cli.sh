@@ -1,0 +1,248 @@
+#!/bin/sh
+# cli.sh - the vodr command from outside: exit codes, one sentence on standard error, no partial output.
+#   tests/cli.sh VODR    a line a check, then "N passed, N failed"; exit 1 when any failed
+set -u
+
+if [ $# -ne 1 ] || [ ! -x "$1" ]; then
+    echo "usage: tests/cli.sh VODR (a program that can be run)" >&2
+    exit 2
+fi
+vodr=$(CDPATH='' cd "$(dirname "$1")" && pwd)/$(basename "$1")
+root=$(CDPATH='' cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d "${TMPDIR:-/tmp}/vodr-cli-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+cd "$work" || exit 1
+passed=0
+failed=0
+
+verdict() { # NAME PROBLEM: an empty PROBLEM is a pass
+    if [ -z "$2" ]; then
+        passed=$((passed + 1))
+        echo "ok   $1"
+    else
+        failed=$((failed + 1))
+        echo "FAIL $1: $2"
+    fi
+}
+
+# good NAME COMMAND...: exit 0, nothing on standard error, standard output in ../out
+good() {
+    name=$1
+    shift
+    "$@" >../out-$$ 2>../err-$$
+    code=$?
+    problem=
+    [ $code -eq 0 ] || problem="exit code $code"
+    [ -s ../err-$$ ] && problem="$problem, said: $(cat ../err-$$)"
+    verdict "$name" "$problem"
+}
+
+# bad CODE WORDS COMMAND...: that exit code, one line on standard error that begins with `vodr: ` and holds WORDS,
+# nothing on standard output, no file made, changed or left behind
+bad() {
+    want=$1
+    words=$2
+    shift 2
+    before=$(ls -lA --full-time)
+    "$@" >../out-$$ 2>../err-$$
+    code=$?
+    problem=
+    [ $code -eq "$want" ] || problem="exit code $code, not $want"
+    [ "$(wc -l <../err-$$)" -eq 1 ] || problem="$problem, $(wc -l <../err-$$) lines on standard error"
+    grep -q '^vodr: ' ../err-$$ || problem="$problem, the line does not begin with vodr:"
+    grep -qF -e "$words" ../err-$$ || problem="$problem, it does not say '$words': $(cat ../err-$$)"
+    [ -s ../out-$$ ] && problem="$problem, something on standard output"
+    [ "$before" = "$(ls -lA --full-time)" ] || problem="$problem, the files changed"
+    shift
+    verdict "refused: $*" "$problem"
+}
+
+expect() { # NAME PATTERN FILE
+    problem=
+    grep -q -e "$2" "$3" || problem="no line of $3 matches $2"
+    verdict "$1" "$problem"
+}
+
+same() { # NAME A B
+    problem=
+    cmp -s "$2" "$3" || problem="$2 and $3 differ"
+    verdict "$1" "$problem"
+}
+
+# Files are judged in a directory of their own; what the checks themselves write lies beside it.
+mkdir here && cd here || exit 1
+i=0
+while [ $i -lt 64 ]; do
+    printf '\000\020\040\100\200\300\377\177\010\030\050\110\210\310\350\170'
+    i=$((i + 1))
+done >v.raw # 16x8x8 voxels
+raw="v.raw --dims 16x8x8"
+
+# ---- help and version ----
+good "vodr --help" "$vodr" --help
+for command in render compare machine info; do
+    expect "vodr --help names $command" "^  $command " ../out-$$
+done
+good "vodr --version" "$vodr" --version
+expect "vodr --version" '^vodr [0-9]' ../out-$$
+for command in compare machine info; do
+    good "vodr $command --help" "$vodr" $command --help
+    expect "vodr $command --help has an example" '^Example' ../out-$$
+done
+good "vodr render --help" "$vodr" render --help
+for option in output machine set tf window view projection zoom size slices crop blend filter traversal threads repeat \
+    stats raw registers background alpha no-orient dims type spacing endian; do
+    expect "vodr render --help explains --$option" "--$option" ../out-$$
+done
+
+# ---- what works ----
+# shellcheck disable=SC2086
+{
+    good "render with nothing to write" "$vodr" render $raw
+    expect "the summary counts 1024 fragments" 'fragments  *1,024' ../out-$$
+    good "render, all outputs" "$vodr" render $raw -o a.png --raw a.rgba --stats a.json --registers r.json
+    expect "stats: schema" '"schema": "vodr-stats-1"' a.json
+    expect "stats: fragments" '"fragments": 1024' a.json
+    expect "stats: no cycles yet" '"cycles": null' a.json
+    verdict "stats: frame_sha256 is of --raw" \
+        "$(grep -q "$(sha256sum a.rgba | cut -d' ' -f1)" a.json || echo "it is not")"
+    verdict "raw: 16x8 pixels of 4 bytes" "$([ "$(wc -c <a.rgba)" -eq 512 ] || wc -c a.rgba)"
+    sed -n 's/^\([a-z_]*\) *|.*/\1/p' "$root/hw/registers.txt" >../registers
+    while read -r register; do
+        expect "registers: $register" "\"$register\": -\{0,1\}[0-9]" r.json
+    done <../registers
+    good "values after =" "$vodr" render $raw --output=b.png --view=-30,20 --raw=b.rgba
+    good "values that begin with -" "$vodr" render $raw -o c.png --view -30,20 --raw c.rgba
+    same "both are one" b.rgba c.rgba
+    good "the same, divided otherwise" "$vodr" render $raw --view -30,20 --raw d.rgba --traversal tile --set brick=3 \
+        --threads 1 --machine paper-general --set=ways=1
+    same "division changes nothing" b.rgba d.rgba
+    good "16 bits" "$vodr" render $raw --set fb_bits=16 --set tf_bits=16 --raw e.rgba -o e.png --alpha
+    verdict "raw: 16x8 pixels of 8 bytes" "$([ "$(wc -c <e.rgba)" -eq 1024 ] || wc -c e.rgba)"
+    good "perspective, mip, background" "$vodr" render $raw --projection perspective:60 --blend mip -o f.png \
+        --background ff8000 --size 20x10 --slices 9 --zoom 1.5 --window 0:200 --tf bone --crop 0:8,0:8,0:8
+    good "--repeat" "$vodr" render $raw --repeat 3 --stats g.json
+    good "options may end with --" "$vodr" render --dims 16x8x8 -- v.raw
+    good "outputs to devices" "$vodr" render $raw -o /dev/null --raw /dev/null
+    good "stats to standard output" "$vodr" render $raw --stats /dev/stdout
+    expect "nothing but JSON there" '^{$' ../out-$$
+    verdict "it is JSON from its first line on" "$([ "$(head -n 1 ../out-$$)" = "{" ] || head -n 1 ../out-$$)"
+    good "machine show" "$vodr" machine show paper-16
+    cp ../out-$$ mine.txt
+    good "machine show gives a machine file" "$vodr" render $raw --machine mine.txt --raw h.rgba
+    same "that draws the same" a.rgba h.rgba
+    printf '0 1 0 0 0\n255 1 1 1 0.5 \n' >tf.txt
+    good "a transfer-function file" "$vodr" render $raw --tf tf.txt
+}
+good "machine list" "$vodr" machine list
+expect "machine list has paper-32" '^paper-32 ' ../out-$$
+
+# ---- compare ----
+good "compare, equal" "$vodr" compare a.png a.png
+good "compare --json, equal" "$vodr" compare a.png a.png --json
+expect "psnr is null" '"psnr": null' ../out-$$
+expect "first_difference is null" '"first_difference": null' ../out-$$
+"$vodr" compare a.png b.png --json --diff diff.png >../out-$$ 2>../err-$$
+verdict "compare, different: exit code 1" "$([ $? -eq 1 ] || echo "it is another")"
+verdict "compare, different: silent on standard error" "$(cat ../err-$$)"
+expect "first_difference has a channel" '"channel": "[rgba]"' ../out-$$
+verdict "--diff writes a picture" "$([ -s diff.png ] || echo "it does not")"
+good "compare within the tolerance" "$vodr" compare a.png b.png --tolerance 255
+bad 2 "16x8 pixels but 'f.png' is 20x10" "$vodr" compare a.png f.png --diff no.png
+bad 2 "'none.png'" "$vodr" compare a.png none.png
+bad 2 "as a PNG" "$vodr" compare a.png a.json
+bad 2 "'../here'" "$vodr" compare a.png ../here
+bad 2 "needs B.png" "$vodr" compare a.png
+bad 2 "--tolerance '-1'" "$vodr" compare a.png b.png --tolerance -1
+bad 3 "no/diff.png" "$vodr" compare a.png b.png --diff no/diff.png
+bad 3 "/dev/full" "$vodr" compare a.png b.png --diff /dev/full
+
+# ---- bad usage ----
+bad 2 "a command is needed" "$vodr"
+bad 2 "'draw'" "$vodr" draw
+bad 2 "further argument 'x'" "$vodr" --version x
+bad 2 "render needs VOLUME" "$vodr" render
+bad 2 "'w.raw'" "$vodr" render v.raw w.raw
+bad 2 "'--colour'" "$vodr" render v.raw --colour red
+bad 2 "'-x'" "$vodr" render v.raw -x
+bad 2 "--size needs a value" "$vodr" render v.raw --size
+bad 2 "--size is given more than once" "$vodr" render v.raw --size 2x2 --size=3x3
+bad 2 "it takes no value" "$vodr" render v.raw --alpha=1
+bad 2 "paper-48" "$vodr" machine show paper-48
+bad 2 "must be list or show" "$vodr" machine print
+bad 2 "further operand" "$vodr" machine list all
+bad 2 "needs the name" "$vodr" machine show
+
+# refuse VALUE... -- OPTION: each value of the option is refused in a sentence that names both
+refuse() {
+    option=$1
+    shift
+    for value in "$@"; do
+        # shellcheck disable=SC2086
+        bad 2 "--$option '$value'" "$vodr" render $raw -o no.png "--$option" "$value"
+    done
+}
+refuse view 1 a,b 1,2,3,4 "1, 2" 1,,2 nan,0 1e999,0 0x10,0 ""
+refuse projection isometric perspective: perspective:0.5 perspective:151 perspective:x parallel:30 ""
+refuse zoom 0 -1 x inf 1x ""
+refuse size 0x3 3x0 16385x1 3 3x 3x4x5 -3x4 3X4 99999999999999999999x1 ""
+refuse slices 0 -1 16385 1.5 x ""
+refuse window 1 1:1 2:1 a:b 1:2:3 ""
+refuse threads -1 1025 x
+refuse repeat 0 1001 x
+refuse background fff gggggg 1234567 0x1234
+refuse set ways =3 ""
+
+# shellcheck disable=SC2086
+{
+    bad 2 "'colour'" "$vodr" render $raw -o no.png --set colour=red
+    bad 2 "--set: ways is '3'" "$vodr" render $raw -o no.png --set ways=3
+    bad 2 "--blend: blend is 'add'" "$vodr" render $raw -o no.png --blend add
+    bad 2 "--filter" "$vodr" render $raw -o no.png --filter cubic
+    bad 2 "--traversal" "$vodr" render $raw -o no.png --traversal spiral
+    bad 2 "cache_bytes" "$vodr" render $raw -o no.png --set cache_bytes=64 --set ways=1024
+    bad 2 "'paper-48'" "$vodr" render $raw -o no.png --machine paper-48
+    bad 2 "'./paper-16'" "$vodr" render $raw -o no.png --machine ./paper-16
+    bad 2 "'.' is a directory" "$vodr" render $raw -o no.png --machine .
+    printf 'ways = 4\nways = 4\n' >twice.txt
+    bad 2 "twice.txt:2" "$vodr" render $raw -o no.png --machine twice.txt
+    bad 2 "'unknown'" "$vodr" render $raw -o no.png --tf unknown
+    printf '0 0 0 0 0\n1 0 0 2 0\n' >tf2.txt
+    bad 2 "tf2.txt:2: b is '2'" "$vodr" render $raw -o no.png --tf tf2.txt
+    bad 2 "both name 'no.png'" "$vodr" render $raw -o no.png --raw no.png
+    bad 2 "dims" "$vodr" render v.raw -o no.png --dims 0x8x8
+    bad 2 "v.raw" "$vodr" render v.raw -o no.png --dims 16x8x9
+    bad 2 "v.raw" "$vodr" render v.raw -o no.png
+    bad 2 "crop" "$vodr" render $raw -o no.png --crop 0:17,0:8,0:8
+    bad 2 "none.nrrd" "$vodr" render none.nrrd -o no.png
+    bad 2 "none?nrrd" "$vodr" render "none
+nrrd" -o no.png
+    : >empty.nrrd
+    bad 2 "empty.nrrd" "$vodr" render empty.nrrd -o no.png
+    bad 2 "here" "$vodr" render ../here -o no.png
+
+    # ---- unwritable output ----
+    mkdir sub
+    for option in output raw stats registers; do
+        bad 3 "'none/x'" "$vodr" render $raw --$option none/x
+        bad 3 "'sub'" "$vodr" render $raw --$option sub
+        bad 3 "'sub/'" "$vodr" render $raw --$option sub/
+        bad 3 "''" "$vodr" render $raw --$option ''
+        bad 3 "'/dev/full'" "$vodr" render $raw --$option /dev/full
+    done
+    bad 3 "/dev/full" "$vodr" render $raw -o no.png --stats /dev/full --raw no.rgba
+    bad 3 "'a.png/x'" "$vodr" render $raw -o a.png/x
+    # A limit on the size of files stands in for a full disk: old files must stay, new ones must not.
+    limited() {
+        (ulimit -f 8 && exec "$@")
+    }
+    bad 3 "'b.rgba'" limited "$vodr" render $raw --size 100x100 -o no.png --raw b.rgba
+    bad 3 "'no.json'" limited "$vodr" render $raw -o b.png --registers no.json
+}
+"$vodr" --help >/dev/full 2>../err-$$
+verdict "standard output is full: exit code 3" "$([ $? -eq 3 ] || echo "it is another")"
+
+rm -f ../out-$$ ../err-$$
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
