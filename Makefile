@@ -1,4 +1,4 @@
-# vodr: make builds build/vodr; make help lists the rest.
+# vodr: make builds build/vodr; make help lists the rest. All that is made lies under build/.
 #
 # BUILD, CC, CFLAGS and SANITIZE may be given: make BUILD=build/clang-O0 CC=clang CFLAGS=-O0
 BUILD    ?= build
@@ -23,15 +23,60 @@ HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 TESTS    := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 
-.PHONY: all help deps demo check check-long table-vodr lint format docs clean
+TOOLS    := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c) $(filter-out $(wildcard tests/test_*.c),$(wildcard tests/*.c)))
+SOURCES  := $(wildcard */*.[ch] */*/*.[ch])
+SCRIPTS  := $(wildcard scripts/*) $(wildcard tests/*.sh)
 
-all: $(BUILD)/vodr
+# What a target starts itself runs on all cores, unless make was given -j.
+PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-help:
-	@sed -n 's/^\([a-z][a-z-]*\):.*## /\1 - /p' $(MAKEFILE_LIST) | sort
+.PHONY: all help deps demo check check-long tests table-vodr bench lint format docs clean
 
-deps: ## install what the build, the demo and the tests need (Debian 12)
-	scripts/deps
+all: $(BUILD)/vodr ## build build/vodr
+
+help: ## list the targets
+	@sed -n 's/^\([a-z][a-z-]*\):.*## /\1 - /p' Makefile | sort
+
+deps: ## install what the build, the demo, the tests and lint need (Debian 12)
+	@scripts/deps
+
+demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in build/demo/
+	@scripts/deps demo
+	@$(MAKE) -s $(PARALLEL) all $(BUILD)/bench/table_vodr
+	@scripts/demo $(BUILD)
+
+tests: $(TESTS) $(TOOLS)
+
+check: ## run every test; the last line is `N passed, N failed`
+	@scripts/deps check
+	@$(MAKE) -s $(PARALLEL) all tests
+	@scripts/check $(BUILD)
+
+check-long: ## the same, with 10,000 random cases
+	@scripts/deps check
+	@$(MAKE) -s $(PARALLEL) all tests
+	@scripts/check --long $(BUILD)
+
+table-vodr: $(BUILD)/bench/table_vodr ## the paper's Table 1 beside ours, and what the paper leaves out
+	@$(BUILD)/bench/table_vodr
+
+lint: $(BUILD)/generate ## formatting, shell scripts, layers, generated pages
+	@scripts/deps lint
+	@clang-format --dry-run -Werror $(SOURCES)
+	@shellcheck $(SCRIPTS) .ci/run
+	@scripts/layers
+	@$(BUILD)/generate markdown $(HW) | diff -u docs/parameters.md - || { echo 'docs/parameters.md is stale: make docs' >&2; exit 1; }
+	@echo 'lint: clean'
+
+format: ## lay the C sources out by .clang-format
+	clang-format -i $(SOURCES)
+
+docs: $(BUILD)/generate $(BUILD)/bench/table_vodr ## write docs/parameters.md and the tables in the pages again
+	$(BUILD)/generate markdown $(HW) > docs/parameters.md
+	scripts/tables $(BUILD) size table1 views
+
+bench: $(BUILD)/bench/speed ## measure, and write the speed tables in the pages again
+	scripts/tables $(BUILD) speed
 
 $(BUILD)/generate: hw/generate.c
 	@mkdir -p $(@D)
@@ -66,6 +111,11 @@ $(BUILD)/libhost.a: $(HOST)
 
 $(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
+
+$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BUILD)/libhost.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
+
+$(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)

@@ -1,7 +1,7 @@
 /* render.c - vodr_render(): chooses who draws. */
 #include <stdlib.h>
 
-#include "error.h"
+#include "fused.h"
 #include "pipeline.h"
 #include "vodr.h"
 
@@ -11,21 +11,11 @@ static void report(const vodr_options *options, double done)
         options->progress(options->progress_context, done);
 }
 
-static vodr_status render_blocks(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                                 const vodr_view *view, const vodr_options *options, vodr_frame *frame,
-                                 vodr_counters *counters, vodr_error *error)
+static vodr_status draw_blocks(pipeline *p, const vodr_options *options, vodr_frame *frame, vodr_error *error)
 {
-    pipeline p;
-    vodr_status status = pipeline_start(&p, machine, volume, table, view, true, error);
-    if (status == VODR_OK) {
-        while (pipeline_step(&p))
-            report(options, volume_divider_done(&p.divider));
-        status = pipeline_readout(&p, frame, error);
-    }
-    if (status == VODR_OK)
-        *counters = p.counters;
-    pipeline_finish(&p);
-    return status;
+    while (pipeline_step(p))
+        report(options, volume_divider_done(&p->divider));
+    return pipeline_readout(p, frame, error);
 }
 
 vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
@@ -35,7 +25,17 @@ vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, 
     static const vodr_options defaults = {0};
     *frame = (vodr_frame){0};
     *counters = (vodr_counters){0};
-    return render_blocks(machine, volume, table, view, options ? options : &defaults, frame, counters, error);
+    if (!options)
+        options = &defaults;
+    bool fast = options->path == VODR_PATH_FAST && fused_supports(machine);
+    pipeline p;
+    vodr_status status = pipeline_start(&p, machine, volume, table, view, !fast, error);
+    if (status == VODR_OK)
+        status = fast ? fused_render(&p, volume, options, frame, error) : draw_blocks(&p, options, frame, error);
+    if (status == VODR_OK)
+        *counters = p.counters;
+    pipeline_finish(&p);
+    return status;
 }
 
 void vodr_frame_free(vodr_frame *frame)

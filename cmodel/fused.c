@@ -1,0 +1,302 @@
+/* fused.c - the fast path (fuses volume_divider, slice_generator, rasterizer, texture_unit and alpha_blender): bands of
+ * rows are dealt out to threads; each walks small bricks in visibility order, repacks one at a time and draws its
+ * slices in batches. A band is one thread's alone, so every pixel meets its fragments in the machine's order. */
+#include "fused.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "error.h"
+#include "fused_brick.h"
+#include "fused_kernels.h"
+#include "rasterizer.h"
+#include "slice_generator.h"
+
+enum { MIN_BAND_PX = 16, MAX_THREADS = 256 };
+
+/* What the threads share. */
+typedef struct fused {
+    const vodr_machine *machine; /* the one drawn */
+    vodr_machine walk;           /* the same picture in the fast path's bricks */
+    const vodr_volume *volume;
+    const vodr_view *view;
+    const vodr_options *options;
+    const fused_kernels *kernels;
+    const int32_t *transparent_to;
+    uint32_t *table8; /* the classification table, packed; one of the two */
+    uint64_t *table16;
+    vodr_frame *frame;
+    int32_t threads;
+    pthread_mutex_t lock; /* over what follows */
+    int32_t next_row_px;
+    vodr_status status;
+    vodr_error error;
+} fused;
+
+/* One thread's brick, batch and band of rows. */
+typedef struct fused_worker {
+    fused *shared;
+    fused_brick brick;
+    fused_batch batch;
+    int32_t count;          /* fragments in the batch */
+    span rows[FUSED_BATCH]; /* where they go; x1 - x0 of them each, never empty */
+    int32_t row_count;
+    px_rect band;
+    size_t stride_px; /* of a band's row, with room for a group of lanes beyond */
+    void *pixels;
+} fused_worker;
+
+bool fused_supports(const vodr_machine *machine)
+{
+    const uint16_t one = 1;
+    return pipeline_counts_alone(machine) && *(const uint8_t *)&one == 1;
+}
+
+/* Filters the batch and blends it onto the band. */
+static void flush(fused_worker *w)
+{
+    const fused *s = w->shared;
+    const fused_kernels *k = s->kernels;
+    const fused_texture *t = &w->brick.texture;
+    if (w->brick.linear)
+        (w->brick.wide ? k->linear12 : k->linear8)(t, w->count, &w->batch);
+    else
+        (w->brick.wide ? k->nearest12 : k->nearest8)(t, w->count, &w->batch);
+    const uint16_t *density = w->batch.density;
+    for (int32_t i = 0; i < w->row_count; i++) {
+        const span *row = &w->rows[i];
+        size_t at = (size_t)(row->y - w->band.y0) * w->stride_px + (size_t)row->x0;
+        if (s->table8)
+            k->over8(s->table8, density, row->x1 - row->x0, (uint32_t *)w->pixels + at);
+        else
+            k->over16(s->table16, density, row->x1 - row->x0, (uint64_t *)w->pixels + at);
+        density += row->x1 - row->x0;
+    }
+    w->count = w->row_count = 0;
+}
+
+/* Puts a span into the batch, in pieces where it is long. */
+static void add_span(fused_worker *w, const brick_slice *slice, const span *s, const uint32_t start[3])
+{
+    const fused *shared = w->shared;
+    fused_row row = {.shift = shared->view->shift};
+    for (int c = 0; c < 3; c++) {
+        row.start[c] = start[c];
+        row.a[c] = (uint64_t)s->a[c];
+        row.step[c] = (uint64_t)slice->plane.step_u[c];
+    }
+    for (int32_t x = s->x0; x < s->x1;) {
+        int32_t n = s->x1 - x, room = FUSED_BATCH - w->count;
+        n = n < room ? n : room;
+        shared->kernels->address(&w->brick.texture, &row, n, &w->batch, w->count);
+        w->rows[w->row_count++] = (span){.y = s->y, .x0 = x, .x1 = x + n};
+        w->count += n;
+        x += n;
+        for (int c = 0; c < 3; c++)
+            row.a[c] += (uint64_t)n * row.step[c];
+        if (w->count == FUSED_BATCH)
+            flush(w);
+    }
+}
+
+static void draw_candidate(fused_worker *w, const candidate *c)
+{
+    const vodr_view *view = w->shared->view;
+    bool loaded = false;
+    uint32_t start[3] = {0};
+    slice_generator slices = slice_generator_start(view, &c->box, c->k0, c->k1, false);
+    brick_slice slice;
+    while (slice_generator_next(&slices, &slice)) {
+        rasterizer rows;
+        span s;
+        rasterizer_start(&rows, &slice, &c->bound);
+        while (rasterizer_next(&rows, &s)) {
+            if (!loaded && !fused_brick_load(&w->brick, &c->box, w->shared->transparent_to))
+                return;
+            for (int i = 0; i < 3 && !loaded; i++) {
+                int64_t half = w->brick.linear ? (int64_t)1 << (VODR_POSITION_BITS - 1) : 0;
+                start[i] = (uint32_t)(view->base[i] - half - ((int64_t)w->brick.origin_vox[i] << VODR_POSITION_BITS));
+            }
+            loaded = true;
+            add_span(w, &slice, &s, start);
+        }
+        /* The next slice blends onto the same pixels. */
+        if (w->count)
+            flush(w);
+    }
+}
+
+static void store_band(const fused_worker *w)
+{
+    const vodr_frame *f = w->shared->frame;
+    size_t pixel_bytes = (size_t)f->bits / 2, row_bytes = (size_t)f->width_px * pixel_bytes;
+    for (int32_t y = w->band.y0; y < w->band.y1; y++)
+        memcpy((uint8_t *)f->pixels + (size_t)y * row_bytes,
+               (const uint8_t *)w->pixels + (size_t)(y - w->band.y0) * w->stride_px * pixel_bytes, row_bytes);
+}
+
+static vodr_status draw_band(fused_worker *w, vodr_error *error)
+{
+    const fused *s = w->shared;
+    size_t bytes = w->stride_px * (size_t)(w->band.y1 - w->band.y0) * (size_t)s->frame->bits / 2;
+    w->pixels = calloc(bytes, 1);
+    if (!w->pixels)
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a band of %zu bytes", bytes);
+    volume_divider d;
+    vodr_status status = volume_divider_start(&d, &s->walk, s->volume, s->view, &w->band, s->transparent_to, error);
+    candidate c;
+    while (status == VODR_OK && volume_divider_next(&d, &c))
+        draw_candidate(w, &c);
+    volume_divider_finish(&d);
+    if (status == VODR_OK)
+        store_band(w);
+    free(w->pixels);
+    return status;
+}
+
+/* The next band: large ones first, so that few bricks lie in two, small ones last, so that all threads end together. */
+static bool take_band(fused *s, px_rect *band)
+{
+    pthread_mutex_lock(&s->lock);
+    int32_t left = s->view->height_px - s->next_row_px, rows = s->threads > 1 ? left / (2 * s->threads) : left;
+    rows = rows < MIN_BAND_PX ? MIN_BAND_PX : rows;
+    rows = rows < left ? rows : left;
+    *band = (px_rect){0, s->next_row_px, s->view->width_px, s->next_row_px + rows};
+    s->next_row_px += rows;
+    bool more = rows > 0 && s->status == VODR_OK;
+    pthread_mutex_unlock(&s->lock);
+    return more;
+}
+
+static void fail(fused *s, vodr_status status, const vodr_error *error)
+{
+    pthread_mutex_lock(&s->lock);
+    if (s->status == VODR_OK) {
+        s->status = status;
+        s->error = *error;
+    }
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* Rows handed out, as a share of the frame. */
+static void report(fused *s)
+{
+    if (!s->options->progress)
+        return;
+    pthread_mutex_lock(&s->lock);
+    double done = (double)s->next_row_px / s->view->height_px;
+    pthread_mutex_unlock(&s->lock);
+    s->options->progress(s->options->progress_context, done);
+}
+
+static void draw_bands(fused *s, bool first_thread)
+{
+    fused_worker *w = NULL;
+    vodr_error error;
+    vodr_status status = VODR_OK;
+    if (posix_memalign((void **)&w, 64, sizeof *w) != 0) {
+        vodr_fail(&error, VODR_NO_MEMORY, "no memory for a thread");
+        fail(s, VODR_NO_MEMORY, &error);
+        return;
+    }
+    memset(w, 0, sizeof *w);
+    w->shared = s;
+    w->stride_px = (size_t)s->view->width_px + FUSED_LANES;
+    status = fused_brick_start(&w->brick, &s->walk, s->volume, &error);
+    while (status == VODR_OK && take_band(s, &w->band)) {
+        status = draw_band(w, &error);
+        if (first_thread)
+            report(s);
+    }
+    if (status != VODR_OK)
+        fail(s, status, &error);
+    fused_brick_finish(&w->brick);
+    free(w);
+}
+
+static void *thread_main(void *shared)
+{
+    draw_bands(shared, false);
+    return NULL;
+}
+
+static vodr_status pack_table(fused *s, const vodr_rgba *colours, vodr_error *error)
+{
+    size_t count = (size_t)1 << s->machine->density_bits;
+    if (s->machine->fb_bits == 8)
+        s->table8 = malloc(count * sizeof *s->table8);
+    else
+        s->table16 = malloc(count * sizeof *s->table16);
+    if (!s->table8 && !s->table16)
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a table of %zu entries", count);
+    for (size_t i = 0; i < count; i++) {
+        const vodr_rgba *c = &colours[i];
+        if (s->table8)
+            s->table8[i] = (uint32_t)c->r | (uint32_t)c->g << 8 | (uint32_t)c->b << 16 | (uint32_t)c->a << 24;
+        else
+            s->table16[i] = (uint64_t)c->r | (uint64_t)c->g << 16 | (uint64_t)c->b << 32 | (uint64_t)c->a << 48;
+    }
+    return VODR_OK;
+}
+
+static int32_t thread_count(const vodr_options *options)
+{
+    long threads = options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    return (int32_t)(threads < 1 ? 1 : threads > MAX_THREADS ? MAX_THREADS : threads);
+}
+
+/* The calling thread counts first and then draws with the others. */
+static void run_threads(fused *s, pipeline *count)
+{
+    pthread_t threads[MAX_THREADS];
+    int32_t started = 0;
+    while (started < s->threads - 1 && pthread_create(&threads[started], NULL, thread_main, s) == 0)
+        started++;
+    while (pipeline_step(count))
+        report(s);
+    draw_bands(s, true);
+    while (started > 0)
+        pthread_join(threads[--started], NULL);
+}
+
+vodr_status fused_render(pipeline *count, const vodr_volume *volume, const vodr_options *options, vodr_frame *frame,
+                         vodr_error *error)
+{
+    const vodr_machine *m = count->machine;
+    fused s = {.machine = m,
+               .walk = *m,
+               .volume = volume,
+               .view = count->view,
+               .options = options,
+               .kernels = fused_kernels_for(options->simd),
+               .transparent_to = count->texture.transparent_to,
+               .frame = frame,
+               .threads = thread_count(options)};
+    s.walk.traversal = VODR_TRAVERSAL_LAYER;
+    s.walk.brick = FUSED_EDGE_VOX;
+    s.walk.skip_empty = 0;
+    s.walk.double_buffer = 0;
+    s.walk.texture_memory_bytes = INT32_MAX;
+    frame->width_px = s.view->width_px;
+    frame->height_px = s.view->height_px;
+    frame->bits = m->fb_bits;
+    frame->bytes = (size_t)frame->width_px * (size_t)frame->height_px * (size_t)m->fb_bits / 2;
+    frame->pixels = malloc(frame->bytes);
+    vodr_status status = pack_table(&s, count->texture.colours, error);
+    if (status == VODR_OK && !frame->pixels)
+        status = vodr_fail(error, VODR_NO_MEMORY, "no memory for a frame of %zu bytes", frame->bytes);
+    if (status == VODR_OK && pthread_mutex_init(&s.lock, NULL) == 0) {
+        run_threads(&s, count);
+        pthread_mutex_destroy(&s.lock);
+        status = s.status;
+        if (status != VODR_OK && error)
+            *error = s.error;
+    }
+    free(s.table8);
+    free(s.table16);
+    if (status != VODR_OK)
+        vodr_frame_free(frame);
+    return status;
+}

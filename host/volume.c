@@ -1,0 +1,247 @@
+/* volume.c - opens a volume file by its content and holds it. */
+#include "volume.h"
+#include "orientation.h"
+#include "volume_file.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const struct {
+    const char *name;
+    size_t bytes;
+} types[] = {
+    [VOLUME_UINT8] = {"uint8", 1},     [VOLUME_INT8] = {"int8", 1},     [VOLUME_UINT16] = {"uint16", 2},
+    [VOLUME_INT16] = {"int16", 2},     [VOLUME_UINT32] = {"uint32", 4}, [VOLUME_INT32] = {"int32", 4},
+    [VOLUME_FLOAT32] = {"float32", 4},
+};
+
+const char *volume_type_name(volume_type type)
+{
+    return types[type].name;
+}
+
+size_t volume_type_bytes(volume_type type)
+{
+    return types[type].bytes;
+}
+
+bool volume_type_named(const char *name, volume_type *type)
+{
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (strcmp(name, types[i].name) == 0) {
+            *type = (volume_type)i;
+            return true;
+        }
+    return false;
+}
+
+size_t volume_count(const volume *v)
+{
+    return (size_t)v->dims_vox[0] * (size_t)v->dims_vox[1] * (size_t)v->dims_vox[2];
+}
+
+bool volume_is_ct(const volume *v)
+{
+    return v->min < -500;
+}
+
+static host_status check_regular(const char *path, host_error *error)
+{
+    struct stat status;
+    if (stat(path, &status))
+        return host_fail(error, HOST_BAD_INPUT, "%s: %s", path, strerror(errno));
+    if (S_ISDIR(status.st_mode))
+        return host_fail(error, HOST_BAD_INPUT, "%s: is a directory, must be a volume file", path);
+    if (!S_ISREG(status.st_mode))
+        return host_fail(error, HOST_BAD_INPUT, "%s: is not a regular file", path);
+    if (status.st_size == 0)
+        return host_fail(error, HOST_BAD_INPUT, "%s: is empty", path);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return host_fail(error, HOST_BAD_INPUT, "%s: %s", path, strerror(errno));
+    fclose(file);
+    return HOST_OK;
+}
+
+static host_status read_header(const char *path, const volume_options *options, volume_file *f, host_error *error)
+{
+    bool damaged;
+    if (volume_is_nrrd(path))
+        return volume_nrrd_header(path, f, error);
+    if (volume_is_nifti(path, &damaged))
+        return volume_nifti_header(path, f, error);
+    if (damaged && !options->dims_vox[0])
+        return host_fail(error, HOST_BAD_INPUT, "%s: is a damaged or truncated gzip file", path);
+    return volume_raw_header(path, options, f, error);
+}
+
+host_status volume_check_dims(const char *path, const int64_t dims_vox[3], host_error *error)
+{
+    for (int i = 0; i < 3; i++)
+        if (dims_vox[i] < 1 || dims_vox[i] > VODR_MAX_DIM_VOX)
+            return host_fail(error, HOST_BAD_INPUT, "%s: the size along %c is %lld, must be 1 to %d voxels", path,
+                             "xyz"[i], (long long)dims_vox[i], VODR_MAX_DIM_VOX);
+    return HOST_OK;
+}
+
+static host_status check_header(const char *path, const volume_options *o, const volume_file *f, host_error *error)
+{
+    host_status status = volume_check_dims(path, f->dims_vox, error);
+    if (status != HOST_OK)
+        return status;
+    for (int i = 0; i < 3; i++) {
+        if (!(fabs(f->spacing[i]) >= DBL_MIN) || isinf(f->spacing[i]))
+            return host_fail(error, HOST_BAD_INPUT, "%s: the spacing along %c is %g, must be finite and not 0", path,
+                             "xyz"[i], f -> spacing[i]);
+        if (o->dims_vox[i] && o->dims_vox[i] != f->dims_vox[i])
+            return host_fail(error, HOST_BAD_INPUT, "--dims: the size along %c is %d, but %s is an %s file of %lld",
+                             "xyz"[i], o -> dims_vox[i], path, f -> format, (long long)f -> dims_vox[i]);
+        if (o->crop && (o->crop_lo[i] < 0 || o->crop_lo[i] >= o->crop_hi[i] || o->crop_hi[i] > f->dims_vox[i]))
+            return host_fail(error, HOST_BAD_INPUT, "--crop: the range along %c is %d:%d, must lie within 0:%lld of %s",
+                             "xyz"[i], o -> crop_lo[i], o -> crop_hi[i], (long long)f -> dims_vox[i], path);
+    }
+    if (!isfinite(f->slope) || !isfinite(f->inter))
+        return host_fail(error, HOST_BAD_INPUT, "%s: slope %g and intercept %g must be finite", path, f->slope,
+                         f->inter);
+    return HOST_OK;
+}
+
+static void set_orientation(const volume_file *f, bool no_orient, volume *v)
+{
+    double direction[3][3] = {{0}};
+    for (int i = 0; i < 3; i++)
+        direction[i][i] = no_orient ? 1 : f->spacing[i];
+    orientation_nearest(f->oriented && !no_orient ? f->direction : direction, v->axis, v->sign);
+}
+
+/* Defines a function that finds the least and greatest of n stored voxels. */
+#define DEFINE_RANGE(name, type)                                                                                       \
+    static void name(const void *voxels, size_t n, double *min, double *max)                                           \
+    {                                                                                                                  \
+        const type *stored = voxels;                                                                                   \
+        type lo = stored[0], hi = stored[0];                                                                           \
+        for (size_t i = 1; i < n; i++) {                                                                               \
+            lo = stored[i] < lo ? stored[i] : lo;                                                                      \
+            hi = stored[i] > hi ? stored[i] : hi;                                                                      \
+        }                                                                                                              \
+        *min = lo;                                                                                                     \
+        *max = hi;                                                                                                     \
+    }
+
+DEFINE_RANGE(range_uint8, uint8_t)
+DEFINE_RANGE(range_int8, int8_t)
+DEFINE_RANGE(range_uint16, uint16_t)
+DEFINE_RANGE(range_int16, int16_t)
+DEFINE_RANGE(range_uint32, uint32_t)
+DEFINE_RANGE(range_int32, int32_t)
+
+/* Returns how many voxels are not finite; 0 to 0 is the range when none is. */
+static uint64_t range_float32(const void *voxels, size_t n, double *min, double *max)
+{
+    const float *stored = voxels;
+    float lo = INFINITY, hi = -INFINITY;
+    uint64_t finite = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!isfinite(stored[i]))
+            continue;
+        finite++;
+        lo = stored[i] < lo ? stored[i] : lo;
+        hi = stored[i] > hi ? stored[i] : hi;
+    }
+    *min = finite ? lo : 0;
+    *max = finite ? hi : 0;
+    return n - finite;
+}
+
+static host_status find_range(volume *v, host_error *error)
+{
+    size_t n = volume_count(v);
+    double lo, hi;
+    switch (v->type) {
+    case VOLUME_UINT8: range_uint8(v->voxels, n, &lo, &hi); break;
+    case VOLUME_INT8: range_int8(v->voxels, n, &lo, &hi); break;
+    case VOLUME_UINT16: range_uint16(v->voxels, n, &lo, &hi); break;
+    case VOLUME_INT16: range_int16(v->voxels, n, &lo, &hi); break;
+    case VOLUME_UINT32: range_uint32(v->voxels, n, &lo, &hi); break;
+    case VOLUME_INT32: range_int32(v->voxels, n, &lo, &hi); break;
+    default: v->nonfinite = range_float32(v->voxels, n, &lo, &hi);
+    }
+    double a = lo * v->slope + v->inter, b = hi * v->slope + v->inter;
+    v->min = fmin(a, b);
+    v->max = fmax(a, b);
+    if (v->nonfinite == n)
+        v->min = v->max = 0;
+    if (!isfinite(v->max - v->min))
+        return host_fail(error, HOST_BAD_INPUT, "%s: values from %g to %g are outside the range of double", v->path,
+                         v->min, v->max);
+    return HOST_OK;
+}
+
+static host_status fill(const volume_options *o, const volume_file *f, volume *v, host_error *error)
+{
+    int32_t lo[3], hi[3];
+    for (int i = 0; i < 3; i++) {
+        lo[i] = o->crop ? o->crop_lo[i] : 0;
+        hi[i] = o->crop ? o->crop_hi[i] : (int32_t)f->dims_vox[i];
+        v->dims_vox[i] = hi[i] - lo[i];
+        v->spacing[i] = fabs(f->spacing[i]);
+    }
+    v->type = f->type;
+    v->slope = f->slope;
+    v->inter = f->inter;
+    v->format = f->format;
+    set_orientation(f, o->no_orient, v);
+    host_status status = volume_read_voxels(f, lo, hi, v, error);
+    return status == HOST_OK ? find_range(v, error) : status;
+}
+
+host_status volume_open(const char *path, const volume_options *options, volume *v, host_error *error)
+{
+    *v = (volume){.path = strdup(path)};
+    volume_file f = {.slope = 1};
+    host_status status = v->path ? check_regular(path, error) : host_fail(error, HOST_ENVIRONMENT, "out of memory");
+    if (status == HOST_OK)
+        status = read_header(path, options, &f, error);
+    if (status == HOST_OK)
+        status = check_header(path, options, &f, error);
+    if (status == HOST_OK)
+        status = fill(options, &f, v, error);
+    volume_file_close(&f);
+    if (status != HOST_OK)
+        volume_close(v);
+    return status;
+}
+
+void volume_close(volume *v)
+{
+    volume_free_voxels(v);
+    free(v->path);
+    *v = (volume){0};
+}
+
+void volume_file_close(volume_file *f)
+{
+    if (f->data)
+        fclose(f->data);
+    free(f->data_path);
+    *f = (volume_file){0};
+}
+
+double volume_value(const volume *v, size_t i)
+{
+    double stored;
+    switch (v->type) {
+    case VOLUME_UINT8: stored = ((const uint8_t *)v->voxels)[i]; break;
+    case VOLUME_INT8: stored = ((const int8_t *)v->voxels)[i]; break;
+    case VOLUME_UINT16: stored = ((const uint16_t *)v->voxels)[i]; break;
+    case VOLUME_INT16: stored = ((const int16_t *)v->voxels)[i]; break;
+    case VOLUME_UINT32: stored = ((const uint32_t *)v->voxels)[i]; break;
+    case VOLUME_INT32: stored = ((const int32_t *)v->voxels)[i]; break;
+    default: stored = (double)((const float *)v->voxels)[i];
+    }
+    return isfinite(stored) ? stored * v->slope + v->inter : v->min;
+}
