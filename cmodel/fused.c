@@ -35,13 +35,18 @@ typedef struct fused {
     vodr_error error;
 } fused;
 
+/* Part of a batch: so many fragments on a row of the frame. */
+typedef struct band_row {
+    int32_t y, x, count;
+} band_row;
+
 /* One thread's brick, batch and band of rows. */
 typedef struct fused_worker {
     fused *shared;
     fused_brick brick;
     fused_batch batch;
-    int32_t count;          /* fragments in the batch */
-    span rows[FUSED_BATCH]; /* where they go; x1 - x0 of them each, never empty */
+    int32_t count;              /* fragments in the batch */
+    band_row rows[FUSED_BATCH]; /* where they go; none is empty */
     int32_t row_count;
     px_rect band;
     size_t stride_px; /* of a band's row, with room for a group of lanes beyond */
@@ -64,38 +69,39 @@ static void flush(fused_worker *w)
         (w->brick.wide ? k->linear12 : k->linear8)(t, w->count, &w->batch);
     else
         (w->brick.wide ? k->nearest12 : k->nearest8)(t, w->count, &w->batch);
-    const uint16_t *density = w->batch.density;
-    for (int32_t i = 0; i < w->row_count; i++) {
-        const span *row = &w->rows[i];
-        size_t at = (size_t)(row->y - w->band.y0) * w->stride_px + (size_t)row->x0;
+    fused_batch *b = &w->batch;
+    if (s->table8)
+        for (int32_t i = 0; i < w->count; i++)
+            b->colour8[i] = s->table8[b->density[i]];
+    else
+        for (int32_t i = 0; i < w->count; i++)
+            b->colour16[i] = s->table16[b->density[i]];
+    for (int32_t i = 0, from = 0; i < w->row_count; i++) {
+        const band_row *row = &w->rows[i];
+        size_t at = (size_t)(row->y - w->band.y0) * w->stride_px + (size_t)row->x;
         if (s->table8)
-            k->over8(s->table8, density, row->x1 - row->x0, (uint32_t *)w->pixels + at);
+            k->over8(b->colour8 + from, row->count, (uint32_t *)w->pixels + at);
         else
-            k->over16(s->table16, density, row->x1 - row->x0, (uint64_t *)w->pixels + at);
-        density += row->x1 - row->x0;
+            k->over16(b->colour16 + from, row->count, (uint64_t *)w->pixels + at);
+        from += row->count;
     }
     w->count = w->row_count = 0;
 }
 
-/* Puts a span into the batch, in pieces where it is long. */
-static void add_span(fused_worker *w, const brick_slice *slice, const span *s, const uint32_t start[3])
+/* Puts a span into the batch, in pieces where it is long; `row` holds all but where it begins. */
+static void add_span(fused_worker *w, const span *s, fused_row *row)
 {
-    const fused *shared = w->shared;
-    fused_row row = {.shift = shared->view->shift};
-    for (int c = 0; c < 3; c++) {
-        row.start[c] = start[c];
-        row.a[c] = (uint64_t)s->a[c];
-        row.step[c] = (uint64_t)slice->plane.step_u[c];
-    }
+    for (int c = 0; c < 3; c++)
+        row->a[c] = (uint64_t)s->a[c];
     for (int32_t x = s->x0; x < s->x1;) {
         int32_t n = s->x1 - x, room = FUSED_BATCH - w->count;
         n = n < room ? n : room;
-        shared->kernels->address(&w->brick.texture, &row, n, &w->batch, w->count);
-        w->rows[w->row_count++] = (span){.y = s->y, .x0 = x, .x1 = x + n};
+        w->shared->kernels->address(&w->brick.texture, row, n, &w->batch, w->count);
+        w->rows[w->row_count++] = (band_row){.y = s->y, .x = x, .count = n};
         w->count += n;
         x += n;
         for (int c = 0; c < 3; c++)
-            row.a[c] += (uint64_t)n * row.step[c];
+            row->a[c] += (uint64_t)n * row->step[c];
         if (w->count == FUSED_BATCH)
             flush(w);
     }
@@ -105,22 +111,25 @@ static void draw_candidate(fused_worker *w, const candidate *c)
 {
     const vodr_view *view = w->shared->view;
     bool loaded = false;
-    uint32_t start[3] = {0};
+    fused_row row = {.shift = view->shift};
     slice_generator slices = slice_generator_start(view, &c->box, c->k0, c->k1, false);
     brick_slice slice;
     while (slice_generator_next(&slices, &slice)) {
         rasterizer rows;
         span s;
         rasterizer_start(&rows, &slice, &c->bound);
+        for (int i = 0; i < 3; i++)
+            row.step[i] = (uint64_t)slice.plane.step_u[i];
         while (rasterizer_next(&rows, &s)) {
             if (!loaded && !fused_brick_load(&w->brick, &c->box, w->shared->transparent_to))
                 return;
             for (int i = 0; i < 3 && !loaded; i++) {
                 int64_t half = w->brick.linear ? (int64_t)1 << (VODR_POSITION_BITS - 1) : 0;
-                start[i] = (uint32_t)(view->base[i] - half - ((int64_t)w->brick.origin_vox[i] << VODR_POSITION_BITS));
+                row.start[i] =
+                    (uint32_t)(view->base[i] - half - ((int64_t)w->brick.origin_vox[i] << VODR_POSITION_BITS));
             }
             loaded = true;
-            add_span(w, &slice, &s, start);
+            add_span(w, &s, &row);
         }
         /* The next slice blends onto the same pixels. */
         if (w->count)
@@ -204,7 +213,7 @@ static void draw_bands(fused *s, bool first_thread)
     memset(w, 0, sizeof *w);
     w->shared = s;
     w->stride_px = (size_t)s->view->width_px + FUSED_LANES;
-    status = fused_brick_start(&w->brick, &s->walk, s->volume, &error);
+    status = fused_brick_start(&w->brick, &s->walk, s->volume, s->kernels, &error);
     while (status == VODR_OK && take_band(s, &w->band)) {
         status = draw_band(w, &error);
         if (first_thread)

@@ -6,22 +6,23 @@
 #include "view.h"
 #include "vodr.h"
 
-enum { FUSED_EDGE_VOX = 16 }; /* its words fit a level-1 cache of 32 KiB beside a batch */
-
 typedef struct fused_brick {
     const vodr_volume *volume;
+    const fused_kernels *kernels;
     int32_t density_bits;
     bool linear, wide;     /* wide: 12-bit densities in 64-bit words */
+    bool direct;           /* the volume's voxels are 8-bit densities: rows inside it are read where they lie */
     int32_t origin_vox[3]; /* voxel of word 0 */
     fused_texture texture;
     void *words;
-    uint16_t *voxels; /* the brick with its border, clamped to the volume's edge */
+    void *rows; /* of one plane: densities that were converted or clamped to the volume's edge */
 } fused_brick;
 
 /* Room for one brick of FUSED_EDGE_VOX. Free with fused_brick_finish() in either case. */
-vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume, vodr_error *error);
+vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume,
+                              const fused_kernels *kernels, vodr_error *error);
 
-/* Repacks the voxels of `box`; false, and nothing packed, when every density that its samples can have is transparent
+/* Repacks the voxels of `box`; false when every density that its samples can have is transparent
  * (transparent_to as for volume_divider_start()). */
 bool fused_brick_load(fused_brick *b, const vox_box *box, const int32_t *transparent_to);
 

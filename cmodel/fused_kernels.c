@@ -1,40 +1,123 @@
-/* fused_kernels.c - each body is written once as loops that gcc and clang vectorise, and inlined into one function an
- * instruction set. Table and word look-ups stay scalar loads: they go faster than gather instructions where those are
- * slow and no slower elsewhere. */
+/* fused_kernels.c - each body is written once, as loops that gcc and clang vectorise, and inlined into one function an
+ * instruction set. Look-ups stay scalar loads: they go faster than gather instructions where those are slow, and no
+ * slower elsewhere. Loops that compute run over whole groups of lanes, so that no vector is left half done. */
 #include "fused_kernels.h"
+
+#include <string.h>
 
 #define INLINE static inline __attribute__((always_inline))
 
-/* `count` rounded up to whole groups. */
-INLINE int32_t groups_of(int32_t count)
+/* `count` rounded up to whole groups of lanes. */
+INLINE int32_t whole_groups(int32_t count)
 {
-    return (count + FUSED_LANES - 1) / FUSED_LANES;
+    return (count + FUSED_LANES - 1) & -FUSED_LANES;
+}
+
+typedef uint8_t bytes __attribute__((vector_size(16)));
+typedef uint16_t pairs __attribute__((vector_size(16)));
+
+/* Each of a row's 16 densities beside its right neighbour. */
+INLINE void pair_up(const uint8_t *row, pairs *low, pairs *high)
+{
+    bytes left, right;
+    memcpy(&left, row, sizeof left);
+    memcpy(&right, row + 1, sizeof right);
+    *low = (pairs)__builtin_shufflevector(left, right, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+    *high = (pairs)__builtin_shufflevector(left, right, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+}
+
+/* Eight words from eight pairs of the upper row and the eight below them. */
+INLINE void store_words(pairs upper, pairs lower, uint32_t *words)
+{
+    pairs first = __builtin_shufflevector(upper, lower, 0, 8, 1, 9, 2, 10, 3, 11);
+    pairs second = __builtin_shufflevector(upper, lower, 4, 12, 5, 13, 6, 14, 7, 15);
+    memcpy(words, &first, sizeof first);
+    memcpy(words + 4, &second, sizeof second);
+}
+
+INLINE void widen8(const uint8_t *row, uint8_t *min, uint8_t *max)
+{
+    for (int i = 0; i < FUSED_ROW_WORDS; i++) {
+        min[i] = row[i] < min[i] ? row[i] : min[i];
+        max[i] = row[i] > max[i] ? row[i] : max[i];
+    }
+}
+
+INLINE void pack8_body(const uint8_t *const *rows, int32_t count, uint32_t *words, fused_range *range)
+{
+    pairs upper[2], lower[2];
+    pair_up(rows[0], &upper[0], &upper[1]);
+    for (int32_t y = 0; y < count; y++, words += FUSED_ROW_WORDS) {
+        pair_up(rows[y + 1], &lower[0], &lower[1]);
+        store_words(upper[0], lower[0], words);
+        store_words(upper[1], lower[1], words + 8);
+        upper[0] = lower[0];
+        upper[1] = lower[1];
+    }
+    uint8_t min[FUSED_ROW_WORDS], max[FUSED_ROW_WORDS];
+    memcpy(min, range->min8, sizeof min);
+    memcpy(max, range->max8, sizeof max);
+    for (int32_t y = 0; y <= count; y++) {
+        widen8(rows[y], min, max);
+        widen8(rows[y] + 1, min, max);
+    }
+    memcpy(range->min8, min, sizeof min);
+    memcpy(range->max8, max, sizeof max);
+}
+
+INLINE void widen12(const uint16_t *row, fused_range *range)
+{
+    for (int i = 0; i < FUSED_ROW_WORDS; i++) {
+        range->min12[i] = row[i] < range->min12[i] ? row[i] : range->min12[i];
+        range->max12[i] = row[i] > range->max12[i] ? row[i] : range->max12[i];
+    }
+}
+
+INLINE void pack12_body(const uint16_t *const *rows, int32_t count, uint64_t *words, fused_range *range)
+{
+    for (int32_t y = 0; y < count; y++, words += FUSED_ROW_WORDS) {
+        const uint16_t *upper = rows[y], *lower = rows[y + 1];
+        for (int i = 0; i < FUSED_ROW_WORDS; i++)
+            words[i] = (uint64_t)upper[i] | (uint64_t)upper[i + 1] << 16 | (uint64_t)lower[i] << 32 |
+                       (uint64_t)lower[i + 1] << 48;
+    }
+    for (int32_t y = 0; y <= count; y++) {
+        widen12(rows[y], range);
+        widen12(rows[y] + 1, range);
+    }
+}
+
+/* Position i of a row along axis c, in units of 2^-24 voxel from the brick's first word. */
+INLINE uint32_t position(const fused_row *row, int c, uint32_t i, bool shifted)
+{
+    if (shifted)
+        return row->start[c] + (uint32_t)((row->a[c] + i * row->step[c]) >> row->shift);
+    return row->start[c] + (uint32_t)row->a[c] + i * (uint32_t)row->step[c];
+}
+
+INLINE void address_loop(const fused_texture *t, const fused_row *row, uint32_t count, fused_batch *b, int32_t at,
+                         bool shifted)
+{
+    const fused_row r = *row;
+    uint32_t mask = (1u << t->weight_bits) - 1;
+    int32_t down = 24 - t->weight_bits, up = 15 - t->weight_bits;
+    uint32_t *restrict index = b->index + at, *restrict wx = b->wx.word + at, *restrict wy = b->wy.word + at;
+    uint32_t *restrict wz = b->wz + at;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t x = position(&r, 0, i, shifted), y = position(&r, 1, i, shifted), z = position(&r, 2, i, shifted);
+        index[i] = (x >> 24) + (y >> 24) * FUSED_ROW_WORDS + (z >> 24) * FUSED_PLANE_WORDS;
+        wx[i] = (((x >> down) & mask) << up) * 0x10001u;
+        wy[i] = (((y >> down) & mask) << up) * 0x10001u;
+        wz[i] = (z >> down) & mask;
+    }
 }
 
 INLINE void address_body(const fused_texture *t, const fused_row *row, int32_t count, fused_batch *b, int32_t at)
 {
-    uint32_t position[3][FUSED_LANES], mask = (1u << t->weight_bits) - 1;
-    int32_t down = 24 - t->weight_bits, up = 15 - t->weight_bits;
-    for (int32_t first = 0; first < count; first += FUSED_LANES) {
-        for (int c = 0; c < 3; c++) {
-            uint64_t a = row->a[c] + (uint64_t)first * row->step[c], step = row->step[c];
-            if (row->shift)
-                for (uint32_t i = 0; i < FUSED_LANES; i++)
-                    position[c][i] = row->start[c] + (uint32_t)((a + i * step) >> row->shift);
-            else
-                for (uint32_t i = 0; i < FUSED_LANES; i++)
-                    position[c][i] = row->start[c] + (uint32_t)a + i * (uint32_t)step;
-        }
-        uint32_t *index = b->index + at + first, *wx = b->wx.word + at + first, *wy = b->wy.word + at + first;
-        int32_t *wz = b->wz + at + first;
-        for (int i = 0; i < FUSED_LANES; i++) {
-            uint32_t x = position[0][i], y = position[1][i], z = position[2][i];
-            index[i] = (x >> 24) + (y >> 24) * t->row_stride + (z >> 24) * t->plane_stride;
-            wx[i] = (((x >> down) & mask) << up) * 0x10001u;
-            wy[i] = (((y >> down) & mask) << up) * 0x10001u;
-            wz[i] = (int32_t)((z >> down) & mask);
-        }
-    }
+    if (row->shift)
+        address_loop(t, row, (uint32_t)whole_groups(count), b, at, true);
+    else
+        address_loop(t, row, (uint32_t)whole_groups(count), b, at, false);
 }
 
 /* a + (d*w >> weight_bits), with w raised to bits 14 down and d doubled: floor either way. */
@@ -46,10 +129,10 @@ INLINE int16_t step_half(int16_t d, int16_t w)
 INLINE void linear8_body(const fused_texture *t, int32_t count, fused_batch *b)
 {
     const uint32_t *words = t->words;
-    int32_t guard = t->guard_bits, half = (1 << guard) >> 1, whole = groups_of(count) * FUSED_LANES;
+    int32_t guard = t->guard_bits, half = (1 << guard) >> 1, whole = whole_groups(count);
     for (int32_t i = 0; i < count; i++) {
         b->near.word[i] = words[b->index[i]];
-        b->far.word[i] = words[b->index[i] + t->plane_stride];
+        b->far.word[i] = words[b->index[i] + FUSED_PLANE_WORDS];
     }
     for (int32_t i = 0; i < 2 * whole; i++) {
         int16_t w = b->wx.half[i];
@@ -71,7 +154,7 @@ INLINE void linear8_body(const fused_texture *t, int32_t count, fused_batch *b)
     }
     for (int32_t i = 0; i < whole; i++) {
         int32_t near = (int32_t)(b->near.word[i] & 0xffff), far = (int32_t)(b->near.word[i] >> 16);
-        b->density[i] = (uint16_t)((near + (((far - near) * b->wz[i]) >> t->weight_bits) + half) >> guard);
+        b->density[i] = (uint16_t)((near + (((far - near) * (int32_t)b->wz[i]) >> t->weight_bits) + half) >> guard);
     }
 }
 
@@ -92,19 +175,15 @@ INLINE void linear12_body(const fused_texture *t, int32_t count, fused_batch *b)
 {
     const uint64_t *words = t->words;
     int32_t guard = t->guard_bits, half = (1 << guard) >> 1, bits = t->weight_bits, down = 15 - bits;
-    for (int32_t first = 0; first < count; first += FUSED_LANES) {
-        uint64_t near[FUSED_LANES], far[FUSED_LANES];
-        int32_t last = count - first < FUSED_LANES ? count - first : FUSED_LANES;
-        const uint32_t *index = b->index + first, *wx = b->wx.word + first, *wy = b->wy.word + first;
-        for (int32_t i = 0; i < FUSED_LANES; i++) {
-            near[i] = i < last ? words[index[i]] : 0;
-            far[i] = i < last ? words[index[i] + t->plane_stride] : 0;
-        }
-        for (int32_t i = 0; i < FUSED_LANES; i++) {
-            int32_t x = (int32_t)((wx[i] & 0xffff) >> down), y = (int32_t)((wy[i] & 0xffff) >> down);
-            int32_t n = plane12(near[i], x, y, bits, guard), f = plane12(far[i], x, y, bits, guard);
-            b->density[first + i] = (uint16_t)((lerp(n, f, b->wz[first + i], bits) + half) >> guard);
-        }
+    int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < count; i++) {
+        b->near12[i] = words[b->index[i]];
+        b->far12[i] = words[b->index[i] + FUSED_PLANE_WORDS];
+    }
+    for (int32_t i = 0; i < whole; i++) {
+        int32_t x = (int32_t)((b->wx.word[i] & 0xffff) >> down), y = (int32_t)((b->wy.word[i] & 0xffff) >> down);
+        int32_t near = plane12(b->near12[i], x, y, bits, guard), far = plane12(b->far12[i], x, y, bits, guard);
+        b->density[i] = (uint16_t)((lerp(near, far, (int32_t)b->wz[i], bits) + half) >> guard);
     }
 }
 
@@ -112,7 +191,7 @@ INLINE void nearest8_body(const fused_texture *t, int32_t count, fused_batch *b)
 {
     const uint32_t *words = t->words;
     for (int32_t i = 0; i < count; i++)
-        b->density[i] = (uint16_t)words[b->index[i]];
+        b->density[i] = (uint16_t)(words[b->index[i]] & 0xff);
 }
 
 INLINE void nearest12_body(const fused_texture *t, int32_t count, fused_batch *b)
@@ -129,44 +208,48 @@ INLINE uint32_t scale_pair(uint32_t pair, uint32_t m)
     return ((t + ((t >> 8) & 0x00ff00ffu)) >> 8) & 0x00ff00ffu;
 }
 
-INLINE void over8_body(const uint32_t *table, const uint16_t *density, int32_t count, uint32_t *pixels)
+/* All ones where i < count, else zero; a comparison would tempt the compiler to split the loop. */
+INLINE uint32_t lane_mask(int32_t i, int32_t count)
 {
-    for (int32_t first = 0; first < count; first += FUSED_LANES) {
-        uint32_t source[FUSED_LANES];
-        int32_t last = count - first < FUSED_LANES ? count - first : FUSED_LANES;
-        for (int32_t i = 0; i < FUSED_LANES; i++)
-            source[i] = i < last ? table[density[first + i]] : 0;
-        for (int32_t i = 0; i < FUSED_LANES; i++) {
-            uint32_t pixel = pixels[first + i], through = 255 - (source[i] >> 24);
-            uint32_t even = scale_pair(pixel & 0x00ff00ffu, through),
-                     odd = scale_pair((pixel >> 8) & 0x00ff00ffu, through);
-            pixels[first + i] = source[i] + (even | (odd << 8));
-        }
+    return (uint32_t)((i - count) >> 31);
+}
+
+INLINE void over8_body(const uint32_t *restrict colour, int32_t count, uint32_t *restrict pixels)
+{
+    int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < whole; i++) {
+        uint32_t near = colour[i] & lane_mask(i, count), far = pixels[i], through = 255 - (near >> 24);
+        uint32_t even = scale_pair(far & 0x00ff00ffu, through), odd = scale_pair((far >> 8) & 0x00ff00ffu, through);
+        pixels[i] = near + (even | (odd << 8));
     }
 }
 
-INLINE uint64_t scale16(uint64_t channel, uint64_t m)
+INLINE uint64_t scale16(uint64_t channel, uint32_t m)
 {
-    uint32_t t = (uint32_t)channel * (uint32_t)m + 0x8000u;
+    uint32_t t = (uint32_t)channel * m + 0x8000u;
     return (t + (t >> 16)) >> 16;
 }
 
-INLINE void over16_body(const uint64_t *table, const uint16_t *density, int32_t count, uint64_t *pixels)
+INLINE void over16_body(const uint64_t *restrict colour, int32_t count, uint64_t *restrict pixels)
 {
-    for (int32_t first = 0; first < count; first += FUSED_LANES) {
-        uint64_t source[FUSED_LANES];
-        int32_t last = count - first < FUSED_LANES ? count - first : FUSED_LANES;
-        for (int32_t i = 0; i < FUSED_LANES; i++)
-            source[i] = i < last ? table[density[first + i]] : 0;
-        for (int32_t i = 0; i < FUSED_LANES; i++) {
-            uint64_t p = pixels[first + i], m = 65535 - (source[i] >> 48);
-            pixels[first + i] = source[i] + (scale16(p & 0xffff, m) | scale16((p >> 16) & 0xffff, m) << 16 |
-                                             scale16((p >> 32) & 0xffff, m) << 32 | scale16(p >> 48, m) << 48);
-        }
+    int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < whole; i++) {
+        uint64_t near = colour[i] & (uint64_t)(int64_t)(int32_t)lane_mask(i, count), far = pixels[i];
+        uint32_t through = 65535 - (uint32_t)(near >> 48);
+        pixels[i] = near + (scale16(far & 0xffff, through) | scale16((far >> 16) & 0xffff, through) << 16 |
+                            scale16((far >> 32) & 0xffff, through) << 32 | scale16(far >> 48, through) << 48);
     }
 }
 
 #define DEFINE_KERNELS(set, target)                                                                                    \
+    target static void pack8_##set(const uint8_t *const *rows, int32_t count, uint32_t *words, fused_range *range)     \
+    {                                                                                                                  \
+        pack8_body(rows, count, words, range);                                                                         \
+    }                                                                                                                  \
+    target static void pack12_##set(const uint16_t *const *rows, int32_t count, uint64_t *words, fused_range *range)   \
+    {                                                                                                                  \
+        pack12_body(rows, count, words, range);                                                                        \
+    }                                                                                                                  \
     target static void address_##set(const fused_texture *t, const fused_row *row, int32_t count, fused_batch *b,      \
                                      int32_t at)                                                                       \
     {                                                                                                                  \
@@ -188,16 +271,17 @@ INLINE void over16_body(const uint64_t *table, const uint16_t *density, int32_t 
     {                                                                                                                  \
         nearest12_body(t, count, b);                                                                                   \
     }                                                                                                                  \
-    target static void over8_##set(const uint32_t *table, const uint16_t *density, int32_t count, uint32_t *pixels)    \
+    target static void over8_##set(const uint32_t *colour, int32_t count, uint32_t *pixels)                            \
     {                                                                                                                  \
-        over8_body(table, density, count, pixels);                                                                     \
+        over8_body(colour, count, pixels);                                                                             \
     }                                                                                                                  \
-    target static void over16_##set(const uint64_t *table, const uint16_t *density, int32_t count, uint64_t *pixels)   \
+    target static void over16_##set(const uint64_t *colour, int32_t count, uint64_t *pixels)                           \
     {                                                                                                                  \
-        over16_body(table, density, count, pixels);                                                                    \
+        over16_body(colour, count, pixels);                                                                            \
     }                                                                                                                  \
-    static const fused_kernels kernels_##set = {address_##set,   linear8_##set, linear12_##set, nearest8_##set,        \
-                                                nearest12_##set, over8_##set,   over16_##set}
+    static const fused_kernels kernels_##set = {pack8_##set,     pack12_##set,   address_##set,                        \
+                                                linear8_##set,   linear12_##set, nearest8_##set,                       \
+                                                nearest12_##set, over8_##set,    over16_##set}
 
 DEFINE_KERNELS(portable, );
 

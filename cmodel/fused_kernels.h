@@ -10,6 +10,10 @@ enum {
     FUSED_LANES = 16,  /* fragments are handled in groups of this many; what is over is computed and dropped */
     FUSED_BATCH = 512, /* fragments a batch holds */
     FUSED_ROOM = FUSED_BATCH + FUSED_LANES,
+
+    FUSED_EDGE_VOX = 15, /* of a brick: its words fit a level-1 cache of 32 KiB beside a batch */
+    FUSED_ROW_WORDS = FUSED_EDGE_VOX + 1,
+    FUSED_PLANE_WORDS = FUSED_ROW_WORDS * FUSED_ROW_WORDS,
 };
 
 /* A fragment's two neighbours in y as halves of a word. */
@@ -23,16 +27,19 @@ typedef union fused_pairs {
 typedef struct fused_batch {
     _Alignas(64) uint32_t index[FUSED_ROOM];
     _Alignas(64) fused_pairs wx, wy;
-    _Alignas(64) int32_t wz[FUSED_ROOM];
+    _Alignas(64) uint32_t wz[FUSED_ROOM];
     _Alignas(64) uint16_t density[FUSED_ROOM];
+    _Alignas(64) uint32_t colour8[FUSED_ROOM]; /* of the two, the one of the frame buffer's width */
+    _Alignas(64) uint64_t colour16[FUSED_ROOM];
     _Alignas(64) fused_pairs near, far, other;
+    _Alignas(64) uint64_t near12[FUSED_ROOM], far12[FUSED_ROOM];
 } fused_batch;
 
-/* A brick's densities, repacked: word (x, y, z) holds voxels (x, y), (x+1, y), (x, y+1), (x+1, y+1) of plane z in
- * ascending bits, 8 bits each in a 32-bit word or 16 in a 64-bit word; with filter=nearest the first alone. */
+/* A brick's densities, repacked: word (x, y, z), at x + y*FUSED_ROW_WORDS + z*FUSED_PLANE_WORDS, holds voxels (x, y),
+ * (x+1, y), (x, y+1), (x+1, y+1) of plane z in ascending bits, 8 bits each in a 32-bit word or 16 in a 64-bit word;
+ * with filter=nearest the first alone. */
 typedef struct fused_texture {
     const void *words;
-    uint32_t row_stride, plane_stride; /* words */
     int32_t weight_bits, guard_bits;
 } fused_texture;
 
@@ -44,7 +51,16 @@ typedef struct fused_row {
     int32_t shift;
 } fused_row;
 
+/* Bounds of the densities seen, of 8 or 12 bits, column by column. */
+typedef struct fused_range {
+    uint8_t min8[FUSED_ROW_WORDS], max8[FUSED_ROW_WORDS];
+    uint16_t min12[FUSED_ROW_WORDS], max12[FUSED_ROW_WORDS];
+} fused_range;
+
 typedef struct fused_kernels {
+    /* One plane of words from `count` + 1 rows of FUSED_ROW_WORDS + 1 densities; widens the range by them. */
+    void (*pack8)(const uint8_t *const *rows, int32_t count, uint32_t *words, fused_range *range);
+    void (*pack12)(const uint16_t *const *rows, int32_t count, uint64_t *words, fused_range *range);
     /* Indices and weights of `count` fragments into the batch from `at` on; up to FUSED_LANES - 1 beyond are
      * overwritten. */
     void (*address)(const fused_texture *t, const fused_row *row, int32_t count, fused_batch *b, int32_t at);
@@ -53,10 +69,10 @@ typedef struct fused_kernels {
     void (*linear12)(const fused_texture *t, int32_t count, fused_batch *b);
     void (*nearest8)(const fused_texture *t, int32_t count, fused_batch *b);
     void (*nearest12)(const fused_texture *t, int32_t count, fused_batch *b);
-    /* over: `count` fragments onto a row of pixels of four 8- or 16-bit channels, r lowest. Rewrites, unchanged, up to
+    /* over: `count` colours onto a row of pixels of four 8- or 16-bit channels, r lowest. Rewrites, unchanged, up to
      * FUSED_LANES - 1 pixels beyond. */
-    void (*over8)(const uint32_t *table, const uint16_t *density, int32_t count, uint32_t *pixels);
-    void (*over16)(const uint64_t *table, const uint16_t *density, int32_t count, uint64_t *pixels);
+    void (*over8)(const uint32_t *colour, int32_t count, uint32_t *pixels);
+    void (*over16)(const uint64_t *colour, int32_t count, uint64_t *pixels);
 } fused_kernels;
 
 /* The kernels for an instruction set, or the best the computer has below it. */

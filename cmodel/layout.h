@@ -5,8 +5,6 @@
 
 #include "vodr.h"
 
-enum { FB_TILE_PX = 32 };
-
 static inline int32_t pixel_bytes(const vodr_machine *m)
 {
     return m->fb_bits / 2; /* four channels of fb_bits */
@@ -48,14 +46,25 @@ static inline int32_t density_bytes(const vodr_machine *m)
     return m->density_bits > 8 ? 2 : 1;
 }
 
-/* The frame buffer as lines: line (x, y) of pixels is number line_number(), its pixels row-major inside it. */
+static inline int32_t log2_of(int32_t power_of_two)
+{
+    int32_t bits = 0;
+    while (1 << bits < power_of_two)
+        bits++;
+    return bits;
+}
+
+/* The frame buffer as lines. Every size inside a tile is a power of two, so addresses are shifts and sums. */
 typedef struct fb_layout {
-    int32_t line_w_px, line_h_px;
-    int32_t columns; /* lines across the frame; tiled: across a tile */
-    int32_t tiles;   /* tiled: tiles across the frame; 0 when linear */
-    int32_t tile_lines;
-    int64_t lines; /* in the whole frame buffer */
+    int32_t line_w_bits, line_h_bits; /* logarithms of a line's width and height in pixels */
+    bool tiled;
+    int32_t tiles;     /* tiled: tiles across the frame */
+    int32_t columns;   /* linear: lines across the frame */
+    int32_t tile_bits; /* tiled: logarithm of the lines in a tile */
+    int64_t lines;     /* in the whole frame buffer */
 } fb_layout;
+
+enum { FB_TILE_BITS = 5, FB_TILE_PX = 1 << FB_TILE_BITS };
 
 static inline int32_t ceil_div32(int32_t a, int32_t b)
 {
@@ -64,32 +73,32 @@ static inline int32_t ceil_div32(int32_t a, int32_t b)
 
 static inline fb_layout fb_layout_of(const vodr_machine *m, int32_t width_px, int32_t height_px)
 {
-    fb_layout l = {.line_w_px = m->line_px.width, .line_h_px = m->line_px.height};
-    if (m->fb_layout == VODR_FB_LAYOUT_TILED) {
-        l.columns = FB_TILE_PX / l.line_w_px;
-        l.tiles = ceil_div32(width_px, FB_TILE_PX);
-        l.tile_lines = l.columns * (FB_TILE_PX / l.line_h_px);
-        l.lines = (int64_t)l.tiles * ceil_div32(height_px, FB_TILE_PX) * l.tile_lines;
-    } else {
-        l.columns = ceil_div32(width_px, l.line_w_px);
-        l.lines = (int64_t)l.columns * ceil_div32(height_px, l.line_h_px);
-    }
+    int32_t w = m->line_px.width, h = m->line_px.height;
+    fb_layout l = {.line_w_bits = log2_of(w),
+                   .line_h_bits = log2_of(h),
+                   .tiled = m->fb_layout == VODR_FB_LAYOUT_TILED,
+                   .tiles = ceil_div32(width_px, FB_TILE_PX),
+                   .columns = ceil_div32(width_px, w)};
+    l.tile_bits = 2 * FB_TILE_BITS - l.line_w_bits - l.line_h_bits;
+    int64_t tiles = (int64_t)l.tiles * ceil_div32(height_px, FB_TILE_PX);
+    l.lines = l.tiled ? tiles << l.tile_bits : (int64_t)l.columns * ceil_div32(height_px, h);
     return l;
 }
 
 static inline int64_t line_number(const fb_layout *l, int32_t x, int32_t y)
 {
-    if (!l->tiles)
-        return (int64_t)(y / l->line_h_px) * l->columns + x / l->line_w_px;
-    int64_t tile = (int64_t)(y / FB_TILE_PX) * l->tiles + x / FB_TILE_PX;
-    int32_t row = y % FB_TILE_PX / l->line_h_px, column = x % FB_TILE_PX / l->line_w_px;
-    return tile * l->tile_lines + row * l->columns + column;
+    int32_t column = x >> l->line_w_bits, row = y >> l->line_h_bits;
+    if (!l->tiled)
+        return (int64_t)row * l->columns + column;
+    int64_t tile = (int64_t)(y >> FB_TILE_BITS) * l->tiles + (x >> FB_TILE_BITS);
+    int32_t across = FB_TILE_BITS - l->line_w_bits, down = FB_TILE_BITS - l->line_h_bits;
+    return (tile << l->tile_bits) + ((row & ((1 << down) - 1)) << across) + (column & ((1 << across) - 1));
 }
 
 /* Index of a pixel within its line. */
 static inline int32_t line_offset(const fb_layout *l, int32_t x, int32_t y)
 {
-    return y % l->line_h_px * l->line_w_px + x % l->line_w_px;
+    return ((y & ((1 << l->line_h_bits) - 1)) << l->line_w_bits) + (x & ((1 << l->line_w_bits) - 1));
 }
 
 #endif

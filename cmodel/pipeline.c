@@ -46,7 +46,7 @@ static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
 /* Where the line ends that holds fragment `from` of a span, cut to the span. */
 static int32_t run_end(const pipeline *p, const span *s, int32_t from)
 {
-    int32_t width = p->memory.layout.line_w_px, end = ((s->x0 + from) / width + 1) * width;
+    int32_t bits = p->memory.layout.line_w_bits, end = (((s->x0 + from) >> bits) + 1) << bits;
     return (end < s->x1 ? end : s->x1) - s->x0;
 }
 

@@ -27,10 +27,13 @@ vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t fra
     c->lines = malloc(lines * sizeof *c->lines);
     c->pixels = picture ? malloc(lines * (size_t)c->line_pixels * sizeof *c->pixels) : NULL;
     c->touched = calloc(c->clear_on_first_touch ? (size_t)frame_lines : 1, 1);
-    if (!c->lines || (picture && !c->pixels) || !c->touched)
+    c->where = malloc((size_t)frame_lines * sizeof *c->where);
+    if (!c->lines || (picture && !c->pixels) || !c->touched || !c->where)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a pixel cache of %zu lines", lines);
     for (size_t i = 0; i < lines; i++)
         c->lines[i] = (cache_line){.number = -1};
+    for (int64_t i = 0; i < frame_lines; i++)
+        c->where[i] = -1;
     return VODR_OK;
 }
 
@@ -81,8 +84,10 @@ static void fill(pixel_cache *c, cache_line *line, int64_t number)
 {
     if (line->number >= 0) {
         write_back(c, line);
+        c->where[line->number] = -1;
         c->evictions++;
     }
+    c->where[number] = (int32_t)(line - c->lines);
     vodr_rgba *pixels = pixels_of(c, line);
     *line = (cache_line){.number = number, .stamp = c->clock};
     if (c->clear_on_first_touch && !c->touched[number]) {
@@ -94,26 +99,18 @@ static void fill(pixel_cache *c, cache_line *line, int64_t number)
     }
 }
 
-static cache_line *look_up(const pixel_cache *c, cache_line *set, int64_t number)
-{
-    for (int32_t way = 0; way < c->ways; way++)
-        if (set[way].number == number)
-            return &set[way];
-    return NULL;
-}
-
 vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count)
 {
     c->clock++;
-    cache_line *set = c->lines + (size_t)set_of(c, line) * (size_t)c->ways, *found = look_up(c, set, line);
-    if (found) {
-        c->hits += (uint64_t)count;
-    } else {
+    int32_t at = c->where[line];
+    c->hits += (uint64_t)count - (at < 0);
+    if (at < 0) {
         c->misses++;
-        c->hits += (uint64_t)count - 1;
-        found = choose_victim(c, set);
-        fill(c, found, line);
+        cache_line *victim = choose_victim(c, c->lines + (size_t)set_of(c, line) * (size_t)c->ways);
+        fill(c, victim, line);
+        at = (int32_t)(victim - c->lines);
     }
+    cache_line *found = &c->lines[at];
     if (c->replacement == VODR_REPLACEMENT_LRU)
         found->stamp = c->clock;
     c->last = found;
@@ -135,6 +132,7 @@ void pixel_cache_finish(pixel_cache *c)
 {
     free(c->lines);
     free(c->pixels);
+    free(c->where);
     free(c->touched);
     *c = (pixel_cache){0};
 }

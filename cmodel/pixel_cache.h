@@ -26,6 +26,7 @@ typedef struct pixel_cache {
     vodr_replacement replacement;
     cache_line *lines; /* set after set */
     vodr_rgba *pixels; /* of each line; NULL when only tags are kept */
+    int32_t *where;    /* by line number: which of the cache's lines holds it, -1: none */
     uint8_t *touched;  /* by line number: whether it missed before in this frame; clear_on_first_touch only */
     uint64_t clock;
     uint32_t lfsr;
