@@ -19,7 +19,8 @@ enum { MIN_BAND_PX = 16, MAX_THREADS = 256 };
 /* What the threads share. */
 typedef struct fused {
     const vodr_machine *machine; /* the one drawn */
-    vodr_machine walk;           /* the same picture in the fast path's bricks */
+    vodr_machine walk;           /* the same picture in layers of all bricks */
+    int32_t edge_vox[3];         /* of the fast path's bricks */
     const vodr_volume *volume;
     const vodr_view *view;
     const vodr_options *options;
@@ -154,7 +155,8 @@ static vodr_status draw_band(fused_worker *w, vodr_error *error)
     if (!w->pixels)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a band of %zu bytes", bytes);
     volume_divider d;
-    vodr_status status = volume_divider_start(&d, &s->walk, s->volume, s->view, &w->band, s->transparent_to, error);
+    vodr_status status =
+        volume_divider_start(&d, &s->walk, s->volume, s->view, s->edge_vox, &w->band, s->transparent_to, error);
     candidate c;
     while (status == VODR_OK && volume_divider_next(&d, &c))
         draw_candidate(w, &c);
@@ -213,7 +215,7 @@ static void draw_bands(fused *s, bool first_thread)
     memset(w, 0, sizeof *w);
     w->shared = s;
     w->stride_px = (size_t)s->view->width_px + FUSED_LANES;
-    status = fused_brick_start(&w->brick, &s->walk, s->volume, s->kernels, &error);
+    status = fused_brick_start(&w->brick, s->machine, s->volume, s->edge_vox, s->kernels, &error);
     while (status == VODR_OK && take_band(s, &w->band)) {
         status = draw_band(w, &error);
         if (first_thread)
@@ -284,10 +286,8 @@ vodr_status fused_render(pipeline *count, const vodr_volume *volume, const vodr_
                .frame = frame,
                .threads = thread_count(options)};
     s.walk.traversal = VODR_TRAVERSAL_LAYER;
-    s.walk.brick = FUSED_EDGE_VOX;
     s.walk.skip_empty = 0;
-    s.walk.double_buffer = 0;
-    s.walk.texture_memory_bytes = INT32_MAX;
+    fused_brick_edges(m, s.view, s.edge_vox);
     frame->width_px = s.view->width_px;
     frame->height_px = s.view->height_px;
     frame->bits = m->fb_bits;

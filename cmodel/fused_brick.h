@@ -12,18 +12,23 @@ typedef struct fused_brick {
     int32_t density_bits;
     bool linear, wide;     /* wide: 12-bit densities in 64-bit words */
     bool direct;           /* the volume's voxels are 8-bit densities: rows inside it are read where they lie */
+    int32_t row_words;     /* of a row */
     int32_t origin_vox[3]; /* voxel of word 0 */
     fused_texture texture;
     void *words;
     void *rows; /* of one plane: densities that were converted or clamped to the volume's edge */
 } fused_brick;
 
-/* Room for one brick of FUSED_EDGE_VOX. Free with fused_brick_finish() in either case. */
-vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume,
-                              const fused_kernels *kernels, vodr_error *error);
+/* The bricks that make the frame cheapest, in voxels along each axis: long along the rows of the screen, small enough
+ * for a level-1 cache. */
+void fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edge_vox[3]);
 
-/* Repacks the voxels of `box`; false when every density that its samples can have is transparent
- * (transparent_to as for volume_divider_start()). */
+/* Room for one brick of these edges. Free with fused_brick_finish() in either case. */
+vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume,
+                              const int32_t edge_vox[3], const fused_kernels *kernels, vodr_error *error);
+
+/* Repacks the voxels of `box`; false when every density that its samples can have is transparent (transparent_to as for
+ * volume_divider_start()). */
 bool fused_brick_load(fused_brick *b, const vox_box *box, const int32_t *transparent_to);
 
 void fused_brick_finish(fused_brick *b);

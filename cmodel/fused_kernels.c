@@ -35,55 +35,44 @@ INLINE void store_words(pairs upper, pairs lower, uint32_t *words)
     memcpy(words + 4, &second, sizeof second);
 }
 
-INLINE void widen8(const uint8_t *row, uint8_t *min, uint8_t *max)
+INLINE void pack8_body(const uint8_t *const *rows, int32_t count, int32_t width, uint32_t *words, fused_range *range)
 {
-    for (int i = 0; i < FUSED_ROW_WORDS; i++) {
-        min[i] = row[i] < min[i] ? row[i] : min[i];
-        max[i] = row[i] > max[i] ? row[i] : max[i];
+    for (int32_t x = 0; x < width; x += FUSED_LANES) {
+        pairs upper[2], lower[2];
+        pair_up(rows[0] + x, &upper[0], &upper[1]);
+        for (int32_t y = 0; y < count; y++) {
+            pair_up(rows[y + 1] + x, &lower[0], &lower[1]);
+            store_words(upper[0], lower[0], words + y * width + x);
+            store_words(upper[1], lower[1], words + y * width + x + 8);
+            upper[0] = lower[0];
+            upper[1] = lower[1];
+        }
     }
-}
-
-INLINE void pack8_body(const uint8_t *const *rows, int32_t count, uint32_t *words, fused_range *range)
-{
-    pairs upper[2], lower[2];
-    pair_up(rows[0], &upper[0], &upper[1]);
-    for (int32_t y = 0; y < count; y++, words += FUSED_ROW_WORDS) {
-        pair_up(rows[y + 1], &lower[0], &lower[1]);
-        store_words(upper[0], lower[0], words);
-        store_words(upper[1], lower[1], words + 8);
-        upper[0] = lower[0];
-        upper[1] = lower[1];
-    }
-    uint8_t min[FUSED_ROW_WORDS], max[FUSED_ROW_WORDS];
-    memcpy(min, range->min8, sizeof min);
-    memcpy(max, range->max8, sizeof max);
+    uint8_t *restrict min = range->min8, *restrict max = range->max8;
     for (int32_t y = 0; y <= count; y++) {
-        widen8(rows[y], min, max);
-        widen8(rows[y] + 1, min, max);
-    }
-    memcpy(range->min8, min, sizeof min);
-    memcpy(range->max8, max, sizeof max);
-}
-
-INLINE void widen12(const uint16_t *row, fused_range *range)
-{
-    for (int i = 0; i < FUSED_ROW_WORDS; i++) {
-        range->min12[i] = row[i] < range->min12[i] ? row[i] : range->min12[i];
-        range->max12[i] = row[i] > range->max12[i] ? row[i] : range->max12[i];
+        const uint8_t *restrict row = rows[y];
+        for (int32_t x = 0; x <= width; x++) {
+            min[x] = row[x] < min[x] ? row[x] : min[x];
+            max[x] = row[x] > max[x] ? row[x] : max[x];
+        }
     }
 }
 
-INLINE void pack12_body(const uint16_t *const *rows, int32_t count, uint64_t *words, fused_range *range)
+INLINE void pack12_body(const uint16_t *const *rows, int32_t count, int32_t width, uint64_t *words, fused_range *range)
 {
-    for (int32_t y = 0; y < count; y++, words += FUSED_ROW_WORDS) {
+    for (int32_t y = 0; y < count; y++, words += width) {
         const uint16_t *upper = rows[y], *lower = rows[y + 1];
-        for (int i = 0; i < FUSED_ROW_WORDS; i++)
-            words[i] = (uint64_t)upper[i] | (uint64_t)upper[i + 1] << 16 | (uint64_t)lower[i] << 32 |
-                       (uint64_t)lower[i + 1] << 48;
+        for (int32_t x = 0; x < width; x++)
+            words[x] = (uint64_t)upper[x] | (uint64_t)upper[x + 1] << 16 | (uint64_t)lower[x] << 32 |
+                       (uint64_t)lower[x + 1] << 48;
     }
+    uint16_t *restrict min = range->min12, *restrict max = range->max12;
     for (int32_t y = 0; y <= count; y++) {
-        widen12(rows[y], range);
-        widen12(rows[y] + 1, range);
+        const uint16_t *restrict row = rows[y];
+        for (int32_t x = 0; x <= width; x++) {
+            min[x] = row[x] < min[x] ? row[x] : min[x];
+            max[x] = row[x] > max[x] ? row[x] : max[x];
+        }
     }
 }
 
@@ -100,12 +89,12 @@ INLINE void address_loop(const fused_texture *t, const fused_row *row, uint32_t 
 {
     const fused_row r = *row;
     uint32_t mask = (1u << t->weight_bits) - 1;
-    int32_t down = 24 - t->weight_bits, up = 15 - t->weight_bits;
+    int32_t down = 24 - t->weight_bits, up = 15 - t->weight_bits, row_bits = t->row_bits, plane_bits = t->plane_bits;
     uint32_t *restrict index = b->index + at, *restrict wx = b->wx.word + at, *restrict wy = b->wy.word + at;
     uint32_t *restrict wz = b->wz + at;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t x = position(&r, 0, i, shifted), y = position(&r, 1, i, shifted), z = position(&r, 2, i, shifted);
-        index[i] = (x >> 24) + (y >> 24) * FUSED_ROW_WORDS + (z >> 24) * FUSED_PLANE_WORDS;
+        index[i] = (x >> 24) + ((y >> 24) << row_bits) + ((z >> 24) << plane_bits);
         wx[i] = (((x >> down) & mask) << up) * 0x10001u;
         wy[i] = (((y >> down) & mask) << up) * 0x10001u;
         wz[i] = (z >> down) & mask;
@@ -130,9 +119,10 @@ INLINE void linear8_body(const fused_texture *t, int32_t count, fused_batch *b)
 {
     const uint32_t *words = t->words;
     int32_t guard = t->guard_bits, half = (1 << guard) >> 1, whole = whole_groups(count);
+    uint32_t plane = 1u << t->plane_bits;
     for (int32_t i = 0; i < count; i++) {
         b->near.word[i] = words[b->index[i]];
-        b->far.word[i] = words[b->index[i] + FUSED_PLANE_WORDS];
+        b->far.word[i] = words[b->index[i] + plane];
     }
     for (int32_t i = 0; i < 2 * whole; i++) {
         int16_t w = b->wx.half[i];
@@ -176,9 +166,10 @@ INLINE void linear12_body(const fused_texture *t, int32_t count, fused_batch *b)
     const uint64_t *words = t->words;
     int32_t guard = t->guard_bits, half = (1 << guard) >> 1, bits = t->weight_bits, down = 15 - bits;
     int32_t whole = whole_groups(count);
+    uint32_t plane = 1u << t->plane_bits;
     for (int32_t i = 0; i < count; i++) {
         b->near12[i] = words[b->index[i]];
-        b->far12[i] = words[b->index[i] + FUSED_PLANE_WORDS];
+        b->far12[i] = words[b->index[i] + plane];
     }
     for (int32_t i = 0; i < whole; i++) {
         int32_t x = (int32_t)((b->wx.word[i] & 0xffff) >> down), y = (int32_t)((b->wy.word[i] & 0xffff) >> down);
@@ -242,13 +233,15 @@ INLINE void over16_body(const uint64_t *restrict colour, int32_t count, uint64_t
 }
 
 #define DEFINE_KERNELS(set, target)                                                                                    \
-    target static void pack8_##set(const uint8_t *const *rows, int32_t count, uint32_t *words, fused_range *range)     \
+    target static void pack8_##set(const uint8_t *const *rows, int32_t count, int32_t width, uint32_t *words,          \
+                                   fused_range *range)                                                                 \
     {                                                                                                                  \
-        pack8_body(rows, count, words, range);                                                                         \
+        pack8_body(rows, count, width, words, range);                                                                  \
     }                                                                                                                  \
-    target static void pack12_##set(const uint16_t *const *rows, int32_t count, uint64_t *words, fused_range *range)   \
+    target static void pack12_##set(const uint16_t *const *rows, int32_t count, int32_t width, uint64_t *words,        \
+                                    fused_range *range)                                                                \
     {                                                                                                                  \
-        pack12_body(rows, count, words, range);                                                                        \
+        pack12_body(rows, count, width, words, range);                                                                 \
     }                                                                                                                  \
     target static void address_##set(const fused_texture *t, const fused_row *row, int32_t count, fused_batch *b,      \
                                      int32_t at)                                                                       \

@@ -10,10 +10,7 @@ enum {
     FUSED_LANES = 16,  /* fragments are handled in groups of this many; what is over is computed and dropped */
     FUSED_BATCH = 512, /* fragments a batch holds */
     FUSED_ROOM = FUSED_BATCH + FUSED_LANES,
-
-    FUSED_EDGE_VOX = 15, /* of a brick: its words fit a level-1 cache of 32 KiB beside a batch */
-    FUSED_ROW_WORDS = FUSED_EDGE_VOX + 1,
-    FUSED_PLANE_WORDS = FUSED_ROW_WORDS * FUSED_ROW_WORDS,
+    FUSED_MAX_ROW_WORDS = 64,
 };
 
 /* A fragment's two neighbours in y as halves of a word. */
@@ -35,11 +32,12 @@ typedef struct fused_batch {
     _Alignas(64) uint64_t near12[FUSED_ROOM], far12[FUSED_ROOM];
 } fused_batch;
 
-/* A brick's densities, repacked: word (x, y, z), at x + y*FUSED_ROW_WORDS + z*FUSED_PLANE_WORDS, holds voxels (x, y),
+/* A brick's densities, repacked: word (x, y, z), at x + (y << row_bits) + (z << plane_bits), holds voxels (x, y),
  * (x+1, y), (x, y+1), (x+1, y+1) of plane z in ascending bits, 8 bits each in a 32-bit word or 16 in a 64-bit word;
  * with filter=nearest the first alone. */
 typedef struct fused_texture {
     const void *words;
+    int32_t row_bits, plane_bits; /* a row has a multiple of FUSED_LANES words */
     int32_t weight_bits, guard_bits;
 } fused_texture;
 
@@ -53,14 +51,15 @@ typedef struct fused_row {
 
 /* Bounds of the densities seen, of 8 or 12 bits, column by column. */
 typedef struct fused_range {
-    uint8_t min8[FUSED_ROW_WORDS], max8[FUSED_ROW_WORDS];
-    uint16_t min12[FUSED_ROW_WORDS], max12[FUSED_ROW_WORDS];
+    uint8_t min8[FUSED_MAX_ROW_WORDS + 1], max8[FUSED_MAX_ROW_WORDS + 1];
+    uint16_t min12[FUSED_MAX_ROW_WORDS + 1], max12[FUSED_MAX_ROW_WORDS + 1];
 } fused_range;
 
 typedef struct fused_kernels {
-    /* One plane of words from `count` + 1 rows of FUSED_ROW_WORDS + 1 densities; widens the range by them. */
-    void (*pack8)(const uint8_t *const *rows, int32_t count, uint32_t *words, fused_range *range);
-    void (*pack12)(const uint16_t *const *rows, int32_t count, uint64_t *words, fused_range *range);
+    /* One plane of words, `count` rows of `width`, from count + 1 rows of width + 1 densities; widens the range by
+     * them. */
+    void (*pack8)(const uint8_t *const *rows, int32_t count, int32_t width, uint32_t *words, fused_range *range);
+    void (*pack12)(const uint16_t *const *rows, int32_t count, int32_t width, uint64_t *words, fused_range *range);
     /* Indices and weights of `count` fragments into the batch from `at` on; up to FUSED_LANES - 1 beyond are
      * overwritten. */
     void (*address)(const fused_texture *t, const fused_row *row, int32_t count, fused_batch *b, int32_t at);

@@ -165,10 +165,16 @@ static vodr_status start_blocks(pipeline *p, const vodr_volume *volume, const vo
     px_rect window = {0, 0, p->view->width_px, p->view->height_px};
     p->blender = alpha_blender_of(m);
     vodr_status status = texture_unit_start(&p->texture, m, volume, table, p->view, error);
+    int32_t edge = volume_divider_edge(m, p->view);
+    const int32_t *edges = edge ? (const int32_t[3]){edge, edge, edge} : volume->dims_vox;
+    if (status == VODR_OK && edge)
+        status = volume_divider_check(m, volume->dims_vox, edge, error);
     if (status == VODR_OK)
-        status = volume_divider_start(&p->divider, m, volume, p->view, &window, p->texture.transparent_to, error);
+        status =
+            volume_divider_start(&p->divider, m, volume, p->view, edges, &window, p->texture.transparent_to, error);
     if (status == VODR_OK && p->picture)
-        status = texture_unit_reserve(&p->texture, p->divider.edge_vox, error);
+        status = texture_unit_reserve(&p->texture, edge, error);
+    p->counters.brick_vox = edge;
     if (status == VODR_OK)
         status = frame_buffer_start(&p->memory, m, p->view, p->picture, error);
     cache_memory memory = {.context = &p->memory, .read_line = read_line, .write_line = write_line};
@@ -195,7 +201,6 @@ vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_
     if (!p->densities || !p->fragments || !p->seen)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of %zu bricks", bricks);
     p->counters.tile_px = tile_px(machine);
-    p->counters.brick_vox = p->divider.edge_vox;
     return VODR_OK;
 }
 

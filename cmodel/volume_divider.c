@@ -29,18 +29,17 @@ int32_t volume_divider_edge(const vodr_machine *m, const vodr_view *view)
     return (int32_t)(edge > m->brick_min ? edge : m->brick_min);
 }
 
-/* A brick of this edge, clipped to the volume, must fit texture memory with its border. */
-static vodr_status check_room(const vodr_machine *m, const int32_t dims_vox[3], int32_t edge, vodr_error *error)
+vodr_status volume_divider_check(const vodr_machine *m, const int32_t dims_vox[3], int32_t edge_vox, vodr_error *error)
 {
     int64_t bytes = density_bytes(m) * (m->double_buffer ? 2 : 1), border = 2 * filter_border_vox(m);
     for (int c = 0; c < 3; c++)
-        bytes *= edge + border < dims_vox[c] ? edge + border : dims_vox[c];
+        bytes *= edge_vox + border < dims_vox[c] ? edge_vox + border : dims_vox[c];
     if (bytes <= m->texture_memory_bytes)
         return VODR_OK;
     return vodr_fail(error, VODR_INVALID,
                      "a brick of %" PRId32 " voxels (%s) needs %" PRId64
                      " bytes of texture memory with its border%s, but texture_memory_bytes is %" PRId32,
-                     edge, m->brick ? "brick" : "brick_min", bytes, m->double_buffer ? ", double-buffered" : "",
+                     edge_vox, m->brick ? "brick" : "brick_min", bytes, m->double_buffer ? ", double-buffered" : "",
                      m->texture_memory_bytes);
 }
 
@@ -78,7 +77,7 @@ static int32_t eye_index(const volume_divider *d, int c, int32_t count)
     int64_t eye_vox = d->view->base[c] >> VODR_POSITION_BITS;
     if (eye_vox < 0)
         return -1;
-    return eye_vox >= d->dims_vox[c] ? count : (int32_t)(eye_vox / d->edge_vox);
+    return eye_vox >= d->dims_vox[c] ? count : (int32_t)(eye_vox / d->edge_vox[c]);
 }
 
 static void fill_order(volume_divider *d, int c, bool front_to_back)
@@ -107,8 +106,8 @@ static vox_box brick_box(const volume_divider *d, const int32_t first[3], const 
 {
     vox_box box;
     for (int c = 0; c < 3; c++) {
-        int64_t hi = d->edge_vox ? ((int64_t)last[c] + 1) * d->edge_vox : d->dims_vox[c];
-        box.lo[c] = first[c] * d->edge_vox;
+        int64_t hi = ((int64_t)last[c] + 1) * d->edge_vox[c];
+        box.lo[c] = first[c] * d->edge_vox[c];
         box.hi[c] = (int32_t)(hi < d->dims_vox[c] ? hi : d->dims_vox[c]);
     }
     return box;
@@ -137,21 +136,16 @@ static void find_empty(volume_divider *d, const vodr_machine *m, const vodr_volu
 }
 
 vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
-                                 const vodr_view *view, const px_rect *window, const int32_t *transparent_to,
-                                 vodr_error *error)
+                                 const vodr_view *view, const int32_t edge_vox[3], const px_rect *window,
+                                 const int32_t *transparent_to, vodr_error *error)
 {
-    *d = (volume_divider){
-        .view = view, .projection = projection_of(view), .edge_vox = volume_divider_edge(m, view), .window = *window};
+    *d = (volume_divider){.view = view, .projection = projection_of(view), .window = *window};
     size_t total = 1;
     for (int c = 0; c < 3; c++) {
         d->dims_vox[c] = volume->dims_vox[c];
-        d->bricks[c] = d->edge_vox ? ceil_div32(d->dims_vox[c], d->edge_vox) : 1;
+        d->edge_vox[c] = edge_vox[c];
+        d->bricks[c] = ceil_div32(d->dims_vox[c], edge_vox[c]);
         total *= (size_t)d->bricks[c];
-    }
-    if (d->edge_vox) {
-        vodr_status status = check_room(m, d->dims_vox, d->edge_vox, error);
-        if (status != VODR_OK)
-            return status;
     }
     d->tile_px = m->traversal == VODR_TRAVERSAL_TILE ? tile_px(m) : 0;
     choose_nest(d, m->traversal == VODR_TRAVERSAL_COLUMN);
@@ -159,8 +153,7 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
         d->order[c] = calloc((size_t)d->bricks[c], sizeof *d->order[c]);
         if (!d->order[c])
             return vodr_fail(error, VODR_NO_MEMORY, "no memory for the order of %" PRId32 " bricks", d->bricks[c]);
-        if (d->edge_vox)
-            fill_order(d, c, m->blend == VODR_BLEND_UNDER);
+        fill_order(d, c, m->blend == VODR_BLEND_UNDER);
     }
     if (m->skip_empty) {
         d->empty = malloc(total);

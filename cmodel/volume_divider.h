@@ -21,11 +21,11 @@ typedef struct volume_divider {
     const vodr_view *view;
     projection projection;
     int32_t dims_vox[3];
-    int32_t edge_vox;  /* of a brick; 0 when the volume is whole */
-    int32_t bricks[3]; /* along each axis */
-    int32_t nest[3];   /* axes of the three loops, outermost first */
-    int32_t *order[3]; /* indices along an axis, in the order visited */
-    uint8_t *empty;    /* by brick number; NULL unless skip_empty */
+    int32_t edge_vox[3]; /* of a brick */
+    int32_t bricks[3];   /* along each axis */
+    int32_t nest[3];     /* axes of the three loops, outermost first */
+    int32_t *order[3];   /* indices along an axis, in the order visited */
+    uint8_t *empty;      /* by brick number; NULL unless skip_empty */
     uint64_t empty_bricks;
     int32_t tile_px; /* edge of a screen tile; 0 when the window is not cut */
     px_rect tile;    /* the current one, or the whole window */
@@ -38,12 +38,15 @@ typedef struct volume_divider {
  * its own `brick`, else the largest that its footprint and texture memory allow, at least brick_min. 0 for `whole`. */
 int32_t volume_divider_edge(const vodr_machine *m, const vodr_view *view);
 
-/* Prepares the walk over the fragments within `window`, a part of the frame. For skip_empty, transparent_to[lo] >= hi
- * exactly when every density of [lo, hi] is transparent. VODR_INVALID when a brick with its border does not fit texture
- * memory. Free with volume_divider_finish() in either case. */
+/* VODR_INVALID when a brick of this edge, with its border, does not fit the machine's texture memory. */
+vodr_status volume_divider_check(const vodr_machine *m, const int32_t dims_vox[3], int32_t edge_vox, vodr_error *error);
+
+/* Prepares a walk over the fragments within `window`, a part of the frame, in bricks of edge_vox voxels along each
+ * axis. For skip_empty, transparent_to[lo] >= hi exactly when every density of [lo, hi] is transparent. Free with
+ * volume_divider_finish() in either case. */
 vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
-                                 const vodr_view *view, const px_rect *window, const int32_t *transparent_to,
-                                 vodr_error *error);
+                                 const vodr_view *view, const int32_t edge_vox[3], const px_rect *window,
+                                 const int32_t *transparent_to, vodr_error *error);
 
 /* The next candidate in visibility order; false after the last. */
 bool volume_divider_next(volume_divider *d, candidate *c);
