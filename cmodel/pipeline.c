@@ -31,7 +31,10 @@ static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
     int32_t x = s->x0 + from, count = to - from, written = count;
     int64_t line = line_number(&p->memory.layout, x, s->y);
     int32_t offset = line_offset(&p->memory.layout, x, s->y);
+    uint64_t misses = p->cache.misses;
     vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count);
+    if (p->observer && p->observer->miss && p->cache.misses != misses)
+        p->observer->miss(p->observer->context, x, s->y);
     if (p->picture) {
         pixels += offset;
         written = alpha_blender_run(&p->blender, p->fragments + from, count, pixels, &p->counters.terminated_fragments);
@@ -102,6 +105,15 @@ static void begin_visit(pipeline *p, const candidate *c)
     p->counters.bricks += !p->seen[c->brick];
     p->seen[c->brick] = 1;
     p->counters.texture_load_bytes += texture_unit_load(&p->texture, c->brick, &c->box);
+    if (!p->observer || !p->observer->visit)
+        return;
+    const px_rect *clip = &p->divider.tile;
+    vodr_visit visit = {.brick = c->brick, .x0_px = clip->x0, .y0_px = clip->y0, .x1_px = clip->x1, .y1_px = clip->y1};
+    for (int i = 0; i < 3; i++) {
+        visit.lo_vox[i] = c->box.lo[i];
+        visit.hi_vox[i] = c->box.hi[i];
+    }
+    p->observer->visit(p->observer->context, &visit);
 }
 
 static void draw_candidate(pipeline *p, const candidate *c)

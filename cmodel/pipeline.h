@@ -22,6 +22,7 @@ typedef struct pipeline {
     vodr_rgba *fragments; /* likewise */
     uint8_t *seen;        /* by brick: visited before */
     vodr_counters counters;
+    const vodr_observer *observer; /* set it after pipeline_start(); NULL: nobody */
 } pipeline;
 
 /* Checks every input and prepares a frame. With `picture` false the walk leaves out densities, colours and pixels and

@@ -30,6 +30,7 @@ vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, 
     bool fast = options->path == VODR_PATH_FAST && fused_supports(machine);
     pipeline p;
     vodr_status status = pipeline_start(&p, machine, volume, table, view, !fast, error);
+    p.observer = options->observer;
     if (status == VODR_OK)
         status = fast ? fused_render(&p, volume, options, frame, error) : draw_blocks(&p, options, frame, error);
     if (status == VODR_OK)

@@ -153,6 +153,21 @@ typedef enum vodr_simd {
     VODR_SIMD_AVX512,
 } vodr_simd;
 
+/* A brick whose first fragment is about to be drawn: its number (x fastest) and half-open box, and the half-open
+ * rectangle of pixels that its fragments are clipped to (a tile, in tile order; else the frame). */
+typedef struct vodr_visit {
+    uint64_t brick;
+    int32_t lo_vox[3], hi_vox[3];
+    int32_t x0_px, y0_px, x1_px, y1_px;
+} vodr_visit;
+
+/* Told of events in the machine's own order, all from the calling thread. Either function may be NULL. */
+typedef struct vodr_observer {
+    void *context;
+    void (*visit)(void *context, const vodr_visit *visit);
+    void (*miss)(void *context, int32_t x_px, int32_t y_px); /* the pixel whose access missed */
+} vodr_observer;
+
 /* How to compute the frame; none of it changes a byte or a count. All-zero is a good choice. */
 typedef struct vodr_options {
     int32_t threads; /* at least 1; 0 = as many as the machine has cores */
@@ -161,6 +176,7 @@ typedef struct vodr_options {
     /* Called now and then from the calling thread with the done share, 0 to 1; NULL for silence. */
     void (*progress)(void *context, double done);
     void *progress_context;
+    const vodr_observer *observer; /* NULL: nobody */
 } vodr_options;
 
 /* A finished frame, premultiplied RGBA after read-out, rows top to bottom: fb_bits a channel, so 4 or 8 bytes a pixel
