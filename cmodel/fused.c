@@ -20,7 +20,9 @@ enum { MIN_BAND_PX = 16, MAX_THREADS = 256 };
 typedef struct fused {
     const vodr_machine *machine; /* the one drawn */
     vodr_machine walk;           /* the same picture in layers of all bricks */
-    int32_t edge_vox[3];         /* of the fast path's bricks */
+    bool sparse;                 /* so few samples that voxels are fetched one by one from the volume, undivided */
+    texture_unit direct;         /* sparse: drawing the volume whole */
+    int32_t edge_vox[3];         /* of the fast path's bricks; sparse: of the volume */
     const vodr_volume *volume;
     const vodr_view *view;
     const vodr_options *options;
@@ -66,11 +68,11 @@ static void flush(fused_worker *w)
     const fused *s = w->shared;
     const fused_kernels *k = s->kernels;
     const fused_texture *t = &w->brick.texture;
-    if (w->brick.linear)
-        (w->brick.wide ? k->linear12 : k->linear8)(t, w->count, &w->batch);
-    else
-        (w->brick.wide ? k->nearest12 : k->nearest8)(t, w->count, &w->batch);
     fused_batch *b = &w->batch;
+    if (!s->sparse && w->brick.linear)
+        (w->brick.wide ? k->linear12 : k->linear8)(t, w->count, b);
+    else if (!s->sparse)
+        (w->brick.wide ? k->nearest12 : k->nearest8)(t, w->count, b);
     if (s->table8)
         for (int32_t i = 0; i < w->count; i++)
             b->colour8[i] = s->table8[b->density[i]];
@@ -89,29 +91,48 @@ static void flush(fused_worker *w)
     w->count = w->row_count = 0;
 }
 
-/* Puts a span into the batch, in pieces where it is long; `row` holds all but where it begins. */
-static void add_span(fused_worker *w, const span *s, fused_row *row)
+/* Puts a span into the batch, in pieces where it is long: positions, or when sparse densities at once. */
+static void add_span(fused_worker *w, const brick_slice *slice, const span *s, fused_row *row)
 {
-    for (int c = 0; c < 3; c++)
-        row->a[c] = (uint64_t)s->a[c];
-    for (int32_t x = s->x0; x < s->x1;) {
-        int32_t n = s->x1 - x, room = FUSED_BATCH - w->count;
+    const fused *shared = w->shared;
+    span piece = *s;
+    while (piece.x0 < s->x1) {
+        int32_t n = s->x1 - piece.x0, room = FUSED_BATCH - w->count;
         n = n < room ? n : room;
-        w->shared->kernels->address(&w->brick.texture, row, n, &w->batch, w->count);
-        w->rows[w->row_count++] = (band_row){.y = s->y, .x = x, .count = n};
-        w->count += n;
-        x += n;
+        piece.x1 = piece.x0 + n;
         for (int c = 0; c < 3; c++)
-            row->a[c] += (uint64_t)n * row->step[c];
+            row->a[c] = (uint64_t)piece.a[c];
+        if (shared->sparse)
+            texture_unit_filter(&shared->direct, slice, &piece, w->batch.density + w->count);
+        else
+            shared->kernels->address(&w->brick.texture, row, n, &w->batch, w->count);
+        w->rows[w->row_count++] = (band_row){.y = s->y, .x = piece.x0, .count = n};
+        w->count += n;
+        piece.x0 += n;
+        for (int c = 0; c < 3 && piece.x0 < s->x1; c++)
+            piece.a[c] += n * slice->plane.step_u[c];
         if (w->count == FUSED_BATCH)
             flush(w);
     }
 }
 
+/* Repacks a brick that has fragments and sets the positions' origin; false when nothing of it shows. */
+static bool load(fused_worker *w, const vox_box *box, fused_row *row)
+{
+    const vodr_view *view = w->shared->view;
+    if (!fused_brick_load(&w->brick, box, w->shared->transparent_to))
+        return false;
+    for (int c = 0; c < 3; c++) {
+        int64_t half = w->brick.linear ? (int64_t)1 << (VODR_POSITION_BITS - 1) : 0;
+        row->start[c] = (uint32_t)(view->base[c] - half - ((int64_t)w->brick.origin_vox[c] << VODR_POSITION_BITS));
+    }
+    return true;
+}
+
 static void draw_candidate(fused_worker *w, const candidate *c)
 {
     const vodr_view *view = w->shared->view;
-    bool loaded = false;
+    bool loaded = w->shared->sparse;
     fused_row row = {.shift = view->shift};
     slice_generator slices = slice_generator_start(view, &c->box, c->k0, c->k1, false);
     brick_slice slice;
@@ -122,15 +143,10 @@ static void draw_candidate(fused_worker *w, const candidate *c)
         for (int i = 0; i < 3; i++)
             row.step[i] = (uint64_t)slice.plane.step_u[i];
         while (rasterizer_next(&rows, &s)) {
-            if (!loaded && !fused_brick_load(&w->brick, &c->box, w->shared->transparent_to))
+            if (!loaded && !load(w, &c->box, &row))
                 return;
-            for (int i = 0; i < 3 && !loaded; i++) {
-                int64_t half = w->brick.linear ? (int64_t)1 << (VODR_POSITION_BITS - 1) : 0;
-                row.start[i] =
-                    (uint32_t)(view->base[i] - half - ((int64_t)w->brick.origin_vox[i] << VODR_POSITION_BITS));
-            }
             loaded = true;
-            add_span(w, &s, &row);
+            add_span(w, &slice, &s, &row);
         }
         /* The next slice blends onto the same pixels. */
         if (w->count)
@@ -215,7 +231,8 @@ static void draw_bands(fused *s, bool first_thread)
     memset(w, 0, sizeof *w);
     w->shared = s;
     w->stride_px = (size_t)s->view->width_px + FUSED_LANES;
-    status = fused_brick_start(&w->brick, s->machine, s->volume, s->edge_vox, s->kernels, &error);
+    if (!s->sparse)
+        status = fused_brick_start(&w->brick, s->machine, s->volume, s->edge_vox, s->kernels, &error);
     while (status == VODR_OK && take_band(s, &w->band)) {
         status = draw_band(w, &error);
         if (first_thread)
@@ -287,7 +304,11 @@ vodr_status fused_render(pipeline *count, const vodr_volume *volume, const vodr_
                .threads = thread_count(options)};
     s.walk.traversal = VODR_TRAVERSAL_LAYER;
     s.walk.skip_empty = 0;
-    fused_brick_edges(m, s.view, s.edge_vox);
+    s.sparse = !fused_brick_edges(m, s.view, s.edge_vox);
+    s.direct = count->texture;
+    s.direct.whole = true;
+    for (int c = 0; c < 3 && s.sparse; c++)
+        s.edge_vox[c] = volume->dims_vox[c];
     frame->width_px = s.view->width_px;
     frame->height_px = s.view->height_px;
     frame->bits = m->fb_bits;

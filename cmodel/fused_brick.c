@@ -8,8 +8,9 @@
 
 enum { MAX_ROWS = 33, BRICK_BYTES = 40 << 10 };
 
-/* What a row costs before its first fragment, and a voxel's repacking, in the time of one fragment. */
-static const double row_cost = 12, voxel_cost = 0.1;
+/* What a row costs before its first fragment, a voxel's repacking, and a fragment fetched without, in the time of a
+ * fragment. */
+static const double row_cost = 12, voxel_cost = 0.1, direct_cost = 8;
 
 /* Fragments' worth of work a fragment costs beyond itself. The mean chord of a box along u is 1/sum(|u|/edge). */
 static double overhead(const int32_t edge[3], const double u[3], double fragments_per_voxel)
@@ -22,7 +23,7 @@ static double overhead(const int32_t edge[3], const double u[3], double fragment
     return row_cost * rows + voxel_cost * voxels / fragments_per_voxel;
 }
 
-void fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edge_vox[3])
+bool fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edge_vox[3])
 {
     const slice_plane p = slice_plane_of(view, view->slices / 2), next = slice_plane_of(view, view->slices / 2 + 1);
     double u[3], v[3], s[3], unit = 1.0 / ((double)((int64_t)1 << view->shift) * (1 << VODR_POSITION_BITS)), best = 0;
@@ -48,6 +49,7 @@ void fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edg
                         edge_vox[c] = edge[c];
                 }
             }
+    return voxel_cost * volume < direct_cost;
 }
 
 static int32_t bits_of(int32_t power_of_two)

@@ -20,8 +20,8 @@ typedef struct fused_brick {
 } fused_brick;
 
 /* The bricks that make the frame cheapest, in voxels along each axis: long along the rows of the screen, small enough
- * for a level-1 cache. */
-void fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edge_vox[3]);
+ * for a level-1 cache. False when samples are so few that repacking bricks for them is no gain. */
+bool fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edge_vox[3]);
 
 /* Room for one brick of these edges. Free with fused_brick_finish() in either case. */
 vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume,
