@@ -141,7 +141,7 @@ static void pack_plane(const fused_brick *b, int32_t plane, int32_t count, fused
         b->kernels->pack8(rows8, count, b->row_words, (uint32_t *)b->words + at, range);
 }
 
-bool fused_brick_load(fused_brick *b, const vox_box *box, const int32_t *transparent_to)
+void fused_brick_load(fused_brick *b, const vox_box *box, int32_t *min, int32_t *max)
 {
     int32_t border = b->linear ? 1 : 0;
     fused_range range;
@@ -155,13 +155,13 @@ bool fused_brick_load(fused_brick *b, const vox_box *box, const int32_t *transpa
     int32_t rows = box->hi[1] - box->lo[1] + border, planes = box->hi[2] - box->lo[2] + 2 * border;
     for (int32_t plane = 0; plane < planes; plane++)
         pack_plane(b, plane, rows, &range);
-    int32_t min = INT32_MAX, max = 0;
+    *min = INT32_MAX;
+    *max = 0;
     for (int i = 0; i <= b->row_words; i++) {
         int32_t low = b->wide ? range.min12[i] : range.min8[i], high = b->wide ? range.max12[i] : range.max8[i];
-        min = low < min ? low : min;
-        max = high > max ? high : max;
+        *min = low < *min ? low : *min;
+        *max = high > *max ? high : *max;
     }
-    return transparent_to[min] < max;
 }
 
 void fused_brick_finish(fused_brick *b)

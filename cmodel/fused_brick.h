@@ -27,9 +27,8 @@ bool fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edg
 vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume,
                               const int32_t edge_vox[3], const fused_kernels *kernels, vodr_error *error);
 
-/* Repacks the voxels of `box`; false when every density that its samples can have is transparent (transparent_to as for
- * volume_divider_start()). */
-bool fused_brick_load(fused_brick *b, const vox_box *box, const int32_t *transparent_to);
+/* Repacks the voxels of `box`. *min and *max receive bounds of the densities that its samples can have. */
+void fused_brick_load(fused_brick *b, const vox_box *box, int32_t *min, int32_t *max);
 
 void fused_brick_finish(fused_brick *b);
 

@@ -205,13 +205,45 @@ INLINE uint32_t lane_mask(int32_t i, int32_t count)
     return (uint32_t)((i - count) >> 31);
 }
 
+INLINE uint64_t wide_mask(int32_t i, int32_t count)
+{
+    return (uint64_t)((int64_t)(i - count) >> 63);
+}
+
+/* near in front of far. */
+INLINE uint32_t composite8(uint32_t near, uint32_t far)
+{
+    uint32_t through = 255 - (near >> 24);
+    uint32_t even = scale_pair(far & 0x00ff00ffu, through), odd = scale_pair((far >> 8) & 0x00ff00ffu, through);
+    return near + (even | (odd << 8));
+}
+
 INLINE void over8_body(const uint32_t *restrict colour, int32_t count, uint32_t *restrict pixels)
 {
     int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < whole; i++)
+        pixels[i] = composite8(colour[i] & lane_mask(i, count), pixels[i]);
+}
+
+INLINE void under8_body(const uint32_t *restrict colour, int32_t count, uint32_t *restrict pixels,
+                        uint8_t *restrict written)
+{
+    int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < whole; i++)
+        written[i] = pixels[i] >> 24 != 255;
+    for (int32_t i = 0; i < whole; i++)
+        pixels[i] = composite8(pixels[i], colour[i] & lane_mask(i, count));
+}
+
+INLINE void mip_body(const uint32_t *restrict token, int32_t count, uint32_t *restrict pixels,
+                     uint8_t *restrict written)
+{
+    int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < whole; i++)
+        written[i] = token[i] > pixels[i];
     for (int32_t i = 0; i < whole; i++) {
-        uint32_t near = colour[i] & lane_mask(i, count), far = pixels[i], through = 255 - (near >> 24);
-        uint32_t even = scale_pair(far & 0x00ff00ffu, through), odd = scale_pair((far >> 8) & 0x00ff00ffu, through);
-        pixels[i] = near + (even | (odd << 8));
+        uint32_t t = token[i] & lane_mask(i, count);
+        pixels[i] = t > pixels[i] ? t : pixels[i];
     }
 }
 
@@ -221,15 +253,28 @@ INLINE uint64_t scale16(uint64_t channel, uint32_t m)
     return (t + (t >> 16)) >> 16;
 }
 
+INLINE uint64_t composite16(uint64_t near, uint64_t far)
+{
+    uint32_t through = 65535 - (uint32_t)(near >> 48);
+    return near + (scale16(far & 0xffff, through) | scale16((far >> 16) & 0xffff, through) << 16 |
+                   scale16((far >> 32) & 0xffff, through) << 32 | scale16(far >> 48, through) << 48);
+}
+
 INLINE void over16_body(const uint64_t *restrict colour, int32_t count, uint64_t *restrict pixels)
 {
     int32_t whole = whole_groups(count);
-    for (int32_t i = 0; i < whole; i++) {
-        uint64_t near = colour[i] & (uint64_t)(int64_t)(int32_t)lane_mask(i, count), far = pixels[i];
-        uint32_t through = 65535 - (uint32_t)(near >> 48);
-        pixels[i] = near + (scale16(far & 0xffff, through) | scale16((far >> 16) & 0xffff, through) << 16 |
-                            scale16((far >> 32) & 0xffff, through) << 32 | scale16(far >> 48, through) << 48);
-    }
+    for (int32_t i = 0; i < whole; i++)
+        pixels[i] = composite16(colour[i] & wide_mask(i, count), pixels[i]);
+}
+
+INLINE void under16_body(const uint64_t *restrict colour, int32_t count, uint64_t *restrict pixels,
+                         uint8_t *restrict written)
+{
+    int32_t whole = whole_groups(count);
+    for (int32_t i = 0; i < whole; i++)
+        written[i] = pixels[i] >> 48 != 65535;
+    for (int32_t i = 0; i < whole; i++)
+        pixels[i] = composite16(pixels[i], colour[i] & wide_mask(i, count));
 }
 
 #define DEFINE_KERNELS(set, target)                                                                                    \
@@ -272,9 +317,30 @@ INLINE void over16_body(const uint64_t *restrict colour, int32_t count, uint64_t
     {                                                                                                                  \
         over16_body(colour, count, pixels);                                                                            \
     }                                                                                                                  \
-    static const fused_kernels kernels_##set = {pack8_##set,     pack12_##set,   address_##set,                        \
-                                                linear8_##set,   linear12_##set, nearest8_##set,                       \
-                                                nearest12_##set, over8_##set,    over16_##set}
+    target static void under8_##set(const uint32_t *colour, int32_t count, uint32_t *pixels, uint8_t *written)         \
+    {                                                                                                                  \
+        under8_body(colour, count, pixels, written);                                                                   \
+    }                                                                                                                  \
+    target static void under16_##set(const uint64_t *colour, int32_t count, uint64_t *pixels, uint8_t *written)        \
+    {                                                                                                                  \
+        under16_body(colour, count, pixels, written);                                                                  \
+    }                                                                                                                  \
+    target static void mip_##set(const uint32_t *token, int32_t count, uint32_t *pixels, uint8_t *written)             \
+    {                                                                                                                  \
+        mip_body(token, count, pixels, written);                                                                       \
+    }                                                                                                                  \
+    static const fused_kernels kernels_##set = {.pack8 = pack8_##set,                                                  \
+                                                .pack12 = pack12_##set,                                                \
+                                                .address = address_##set,                                              \
+                                                .linear8 = linear8_##set,                                              \
+                                                .linear12 = linear12_##set,                                            \
+                                                .nearest8 = nearest8_##set,                                            \
+                                                .nearest12 = nearest12_##set,                                          \
+                                                .over8 = over8_##set,                                                  \
+                                                .over16 = over16_##set,                                                \
+                                                .under8 = under8_##set,                                                \
+                                                .under16 = under16_##set,                                              \
+                                                .mip = mip_##set}
 
 DEFINE_KERNELS(portable, );
 

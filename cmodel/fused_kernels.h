@@ -11,6 +11,8 @@ enum {
     FUSED_BATCH = 512, /* fragments a batch holds */
     FUSED_ROOM = FUSED_BATCH + FUSED_LANES,
     FUSED_MAX_ROW_WORDS = 64,
+
+    FUSED_TOUCHED = 1 << 16,
 };
 
 /* A fragment's two neighbours in y as halves of a word. */
@@ -28,6 +30,7 @@ typedef struct fused_batch {
     _Alignas(64) uint16_t density[FUSED_ROOM];
     _Alignas(64) uint32_t colour8[FUSED_ROOM]; /* of the two, the one of the frame buffer's width */
     _Alignas(64) uint64_t colour16[FUSED_ROOM];
+    _Alignas(64) uint8_t flag[FUSED_ROOM]; /* 0 or 1: whether a fragment lived, or wrote */
     _Alignas(64) fused_pairs near, far, other;
     _Alignas(64) uint64_t near12[FUSED_ROOM], far12[FUSED_ROOM];
 } fused_batch;
@@ -68,10 +71,14 @@ typedef struct fused_kernels {
     void (*linear12)(const fused_texture *t, int32_t count, fused_batch *b);
     void (*nearest8)(const fused_texture *t, int32_t count, fused_batch *b);
     void (*nearest12)(const fused_texture *t, int32_t count, fused_batch *b);
-    /* over: `count` colours onto a row of pixels of four 8- or 16-bit channels, r lowest. Rewrites, unchanged, up to
-     * FUSED_LANES - 1 pixels beyond. */
+    /* `count` colours onto a row of pixels of four 8- or 16-bit channels, r lowest. Rewrites, unchanged, up to
+     * FUSED_LANES - 1 pixels beyond. written[i]: whether fragment i wrote its pixel. */
     void (*over8)(const uint32_t *colour, int32_t count, uint32_t *pixels);
     void (*over16)(const uint64_t *colour, int32_t count, uint64_t *pixels);
+    void (*under8)(const uint32_t *colour, int32_t count, uint32_t *pixels, uint8_t *written);
+    void (*under16)(const uint64_t *colour, int32_t count, uint64_t *pixels, uint8_t *written);
+    /* mip: a pixel is the largest token so far, and zero at first; the token of a density is FUSED_TOUCHED more. */
+    void (*mip)(const uint32_t *token, int32_t count, uint32_t *pixels, uint8_t *written);
 } fused_kernels;
 
 /* The kernels for an instruction set, or the best the computer has below it. */

@@ -25,10 +25,26 @@ static void write_line(void *context, int64_t line, const vodr_rgba *pixels)
     frame_buffer_write_line(context, line, pixels);
 }
 
-/* The fragments [from, to) of a span: one line, none of them dead. */
-static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
+static int32_t count_bits(uint32_t bits)
 {
-    int32_t x = s->x0 + from, count = to - from, written = count;
+    return __builtin_popcount(bits);
+}
+
+/* How many of a run's fragments wrote their pixel, as the picture's marks tell. */
+static int32_t written_by_marks(pipeline *p, int32_t k, int32_t y, int32_t x, int32_t count)
+{
+    if (!p->marks || !p->marks->written)
+        return count;
+    int32_t written = count_bits(marks_get(marks_row(p->marks, p->marks->written, k, y), x, count));
+    if (p->machine->blend == VODR_BLEND_UNDER)
+        p->counters.terminated_fragments += (uint64_t)(count - written);
+    return written;
+}
+
+/* The fragments [from, to) of a span: one line, none of them dead. */
+static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32_t to)
+{
+    int32_t x = s->x0 + from, count = to - from, written;
     int64_t line = line_number(&p->memory.layout, x, s->y);
     int32_t offset = line_offset(&p->memory.layout, x, s->y);
     uint64_t misses = p->cache.misses;
@@ -38,6 +54,8 @@ static void blend_run(pipeline *p, const span *s, int32_t from, int32_t to)
     if (p->picture) {
         pixels += offset;
         written = alpha_blender_run(&p->blender, p->fragments + from, count, pixels, &p->counters.terminated_fragments);
+    } else {
+        written = written_by_marks(p, k, s->y, x, count);
     }
     if (!written)
         return;
@@ -60,17 +78,27 @@ static void shade_span(pipeline *p, const brick_slice *slice, const span *s)
         p->fragments[i] = p->texture.colours[p->densities[i]];
 }
 
-/* Drops the dead fragments of [from, to) and blends the runs between them. */
-static void blend_living(pipeline *p, const span *s, int32_t from, int32_t to)
+/* Which of the fragments [from, to), at most 32, are alive; the first is bit 0. */
+static uint32_t living(const pipeline *p, int32_t k, const span *s, int32_t from, int32_t to)
 {
-    while (from < to) {
-        int32_t end = from;
-        while (end < to && !p->texture.dead[p->densities[end]])
-            end++;
-        if (end > from)
-            blend_run(p, s, from, end);
-        for (from = end; from < to && p->texture.dead[p->densities[from]]; from++)
-            p->counters.killed_fragments++;
+    if (!p->picture)
+        return marks_get(marks_row(p->marks, p->marks->alive, k, s->y), s->x0 + from, to - from);
+    uint32_t alive = 0;
+    for (int32_t i = from; i < to; i++)
+        alive |= (uint32_t)!p->texture.dead[p->densities[i]] << (i - from);
+    return alive;
+}
+
+/* Drops the dead fragments of [from, to), a line's, and blends the runs between them. */
+static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, int32_t to)
+{
+    uint32_t alive = living(p, k, s, from, to);
+    p->counters.killed_fragments += (uint64_t)(to - from - count_bits(alive));
+    while (alive) {
+        int32_t begin = __builtin_ctz(alive), end = begin;
+        while (end < 32 && alive >> end & 1)
+            alive &= ~(UINT32_C(1) << end++);
+        blend_run(p, k, s, from + begin, from + end);
     }
 }
 
@@ -84,9 +112,9 @@ static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
     for (int32_t from = 0, to; from < count; from = to) {
         to = run_end(p, s, from);
         if (p->machine->kill_transparent)
-            blend_living(p, s, from, to);
+            blend_living(p, slice->k, s, from, to);
         else
-            blend_run(p, s, from, to);
+            blend_run(p, slice->k, s, from, to);
     }
 }
 
@@ -214,11 +242,6 @@ vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of %zu bricks", bricks);
     p->counters.tile_px = tile_px(machine);
     return VODR_OK;
-}
-
-bool pipeline_counts_alone(const vodr_machine *machine)
-{
-    return machine->blend == VODR_BLEND_OVER && !machine->kill_transparent;
 }
 
 static void gather_counters(pipeline *p)

@@ -4,6 +4,7 @@
 
 #include "alpha_blender.h"
 #include "frame_buffer.h"
+#include "marks.h"
 #include "pixel_cache.h"
 #include "texture_unit.h"
 #include "vodr.h"
@@ -22,17 +23,16 @@ typedef struct pipeline {
     vodr_rgba *fragments; /* likewise */
     uint8_t *seen;        /* by brick: visited before */
     vodr_counters counters;
+    const marks *marks;            /* without a picture: what a picture drawn before tells; set it as the observer */
     const vodr_observer *observer; /* set it after pipeline_start(); NULL: nobody */
 } pipeline;
 
 /* Checks every input and prepares a frame. With `picture` false the walk leaves out densities, colours and pixels and
- * counts what the whole machine counts: that is the same wherever every fragment writes its pixel
- * (pipeline_counts_alone()). The inputs must outlive the pipeline. Free with pipeline_finish() in either case. */
+ * counts what the whole machine counts. In `over` without kill_transparent every fragment writes its pixel, and
+ * geometry alone suffices; otherwise it needs the marks of the finished picture. The inputs must outlive the pipeline.
+ * Free with pipeline_finish() in either case. */
 vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                            const vodr_view *view, bool picture, vodr_error *error);
-
-/* Whether a machine's counters depend on the volume through its geometry alone. */
-bool pipeline_counts_alone(const vodr_machine *machine);
 
 /* Draws the next candidate of the divider; false when the frame is done, flushed and counted. */
 bool pipeline_step(pipeline *p);

@@ -43,9 +43,9 @@ projection projection_of(const vodr_view *view)
         p.to_y[c] /= det;
         p.to_depth[c] /= det;
     }
-    p.margin_px = 1 + (norm1(p.to_x) + norm1(p.to_y)) * 4 * unit;
     p.margin_k = 1 + norm1(p.to_depth) * 4 * unit;
     p.margin_eye = 0.5 + 0.01 * norm1(p.to_depth);
+    p.margin_px = 1 + (norm1(p.to_x) + norm1(p.to_y)) * 4 * unit / (view->perspective ? p.margin_eye : 1);
     return p;
 }
 

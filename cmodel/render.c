@@ -27,7 +27,7 @@ vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, 
     *counters = (vodr_counters){0};
     if (!options)
         options = &defaults;
-    bool fast = options->path == VODR_PATH_FAST && fused_supports(machine);
+    bool fast = options->path == VODR_PATH_FAST && fused_supports(machine, view);
     pipeline p;
     vodr_status status = pipeline_start(&p, machine, volume, table, view, !fast, error);
     p.observer = options->observer;

@@ -27,8 +27,8 @@ static bool numerator(const vodr_view *v, int c, int32_t x, int32_t y, int32_t k
 {
     int64_t z = v->perspective ? slice_depth(v, k) : 1, u, w;
     bool ok = v->perspective ? multiply_add(z, v->step_s[c], 0, a) : multiply_add(k, v->step_s[c], 0, a);
-    return ok && multiply_add(z, v->step_u[c], 0, &u) && multiply_add(z, v->step_v[c], 0, &w) &&
-           multiply_add(x, u, *a, a) && multiply_add(y, w, *a, a);
+    return ok && below(v->step_s[c], NUMERATOR_LIMIT) && multiply_add(z, v->step_u[c], 0, &u) &&
+           multiply_add(z, v->step_v[c], 0, &w) && multiply_add(x, u, *a, a) && multiply_add(y, w, *a, a);
 }
 
 static vodr_status check_positions(const vodr_view *v, int c, vodr_error *error)
@@ -81,7 +81,10 @@ vodr_status vodr_view_check(const vodr_view *v, const int32_t dims_vox[3], vodr_
         int64_t scale = (int64_t)1 << v->shift, border;
         if (!below(v->base[c], POSITION_LIMIT) || !multiply_add(-v->base[c], scale, 0, &border) ||
             !multiply_add(((int64_t)dims_vox[c] << VODR_POSITION_BITS) - v->base[c], scale, 0, &border))
-            return vodr_fail(error, VODR_INVALID, "base_%c %" PRId64 " with shift %" PRId32 " does not fit its format",
+            return vodr_fail(error, VODR_INVALID,
+                             "base_%c is %" PRId64 " with shift %" PRId32
+                             " but must be below 2^42 in magnitude, and its distance to the volume's sides below 2^62"
+                             " when shifted",
                              axis_name[c], v->base[c], v->shift);
         status = check_positions(v, c, error);
     }

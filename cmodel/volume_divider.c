@@ -227,12 +227,15 @@ static int propose(const volume_divider *d, candidate *c)
 
 bool volume_divider_next(volume_divider *d, candidate *c)
 {
-    bool more = (d->started && advance(d, 2)) || next_tile(d);
-    while (more) {
+    if (!d->started)
+        d->left = next_tile(d);
+    else if (d->left)
+        d->left = advance(d, 2) || next_tile(d);
+    while (d->left) {
         int level = propose(d, c);
         if (level == 3)
             return true;
-        more = advance(d, level) || next_tile(d);
+        d->left = advance(d, level) || next_tile(d);
     }
     return false;
 }

@@ -27,11 +27,11 @@ typedef struct volume_divider {
     int32_t *order[3];   /* indices along an axis, in the order visited */
     uint8_t *empty;      /* by brick number; NULL unless skip_empty */
     uint64_t empty_bricks;
-    int32_t tile_px; /* edge of a screen tile; 0 when the window is not cut */
-    px_rect tile;    /* the current one, or the whole window */
-    px_rect window;  /* the part of the frame that is drawn */
-    int32_t at[3];   /* loop counters, outermost first */
-    bool started;
+    int32_t tile_px;    /* edge of a screen tile; 0 when the window is not cut */
+    px_rect tile;       /* the current one, or the whole window */
+    px_rect window;     /* the part of the frame that is drawn */
+    int32_t at[3];      /* loop counters, outermost first */
+    bool started, left; /* left: the loops stand at a brick */
 } volume_divider;
 
 /* The brick's edge that a machine uses for a view, in voxels (the paper's section 3.1):
@@ -48,7 +48,7 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
                                  const vodr_view *view, const int32_t edge_vox[3], const px_rect *window,
                                  const int32_t *transparent_to, vodr_error *error);
 
-/* The next candidate in visibility order; false after the last. */
+/* The next candidate in visibility order; false after the last, and from then on. */
 bool volume_divider_next(volume_divider *d, candidate *c);
 
 /* How far the walk is, 0 to 1. */
