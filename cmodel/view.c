@@ -82,9 +82,9 @@ vodr_status vodr_view_check(const vodr_view *v, const int32_t dims_vox[3], vodr_
         if (!below(v->base[c], POSITION_LIMIT) || !multiply_add(-v->base[c], scale, 0, &border) ||
             !multiply_add(((int64_t)dims_vox[c] << VODR_POSITION_BITS) - v->base[c], scale, 0, &border))
             return vodr_fail(error, VODR_INVALID,
-                             "base_%c is %" PRId64 " with shift %" PRId32
-                             " but must be below 2^42 in magnitude, and its distance to the volume's sides below 2^62"
-                             " when shifted",
+                             "base_%c %" PRId64 " with shift %" PRId32
+                             " does not fit its format: its magnitude must be below 2^42, and its distance to the"
+                             " volume's sides, shifted, below 2^62",
                              axis_name[c], v->base[c], v->shift);
         status = check_positions(v, c, error);
     }
