@@ -58,26 +58,31 @@ check-long: ## the same, with 10,000 random cases
 	@$(MAKE) -s $(PARALLEL) all tests
 	@scripts/check --long $(BUILD)
 
-table-vodr: $(BUILD)/bench/table_vodr ## the paper's Table 1 beside ours, and what the paper leaves out
+table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
 	@$(BUILD)/bench/table_vodr
 
-lint: $(BUILD)/generate ## formatting, shell scripts, layers, generated pages
+lint: ## check formatting, shell scripts, layers, links and docs/parameters.md
 	@scripts/deps lint
+	@$(MAKE) -s $(BUILD)/generate
 	@clang-format --dry-run -Werror $(SOURCES)
 	@shellcheck $(SCRIPTS)
 	@scripts/layers
+	@scripts/links
 	@$(BUILD)/generate markdown $(HW) | diff -u docs/parameters.md - || { echo 'docs/parameters.md is stale: make docs' >&2; exit 1; }
 	@echo 'lint: clean'
 
 format: ## lay the C sources out by .clang-format
 	clang-format -i $(SOURCES)
 
-docs: $(BUILD)/generate $(BUILD)/bench/table_vodr ## write docs/parameters.md and the tables in the pages again
-	$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	scripts/tables $(BUILD) size table1 views
+docs: ## write docs/parameters.md and what is generated in the pages again
+	@$(MAKE) -s demo
+	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
+	@scripts/tables $(BUILD) size table1 views tour
 
-bench: $(BUILD)/bench/speed ## measure, and write the speed tables in the pages again
-	scripts/tables $(BUILD) speed
+bench: ## measure the speed, and write its table in the README again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed
+	@scripts/tables $(BUILD) speed
 
 $(BUILD)/generate: hw/generate.c
 	@mkdir -p $(@D)
