@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cmocka.h>
 
@@ -181,13 +182,49 @@ static void test_bad_png(void **state)
     assert_int_equal(image_read_png("/no/such/file", &picture, &error), HOST_BAD_INPUT);
 }
 
+static void put_number(uint8_t bytes[4], uint32_t number)
+{
+    for (int i = 0; i < 4; i++)
+        bytes[i] = (uint8_t)(number >> (24 - 8 * i));
+}
+
+static void refused_at_once(const uint8_t *bytes, size_t size, const char *part)
+{
+    image picture;
+    host_error error;
+    FILE *file = fopen(path, "wb");
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+    assert_int_equal(image_read_png(path, &picture, &error), HOST_BAD_INPUT);
+    if (!strstr(error.text, part))
+        fail_msg("'%s' lacks '%s'", error.text, part);
+}
+
+/* A header that names more pixels, and a chunk that names more bytes, than the file can hold. Neither takes memory. */
+static void test_png_bombs(void **state)
+{
+    (void)state;
+    uint8_t bytes[64] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+    put_number(bytes + 16, 32767);
+    put_number(bytes + 20, 32767);
+    memcpy(bytes + 24, (const uint8_t[]){8, 6, 0, 0, 0}, 5);
+    put_number(bytes + 29, (uint32_t)crc32(0, bytes + 12, 17));
+    memcpy(bytes + 33, "\0\0\0\4IDAT", 8);
+    refused_at_once(bytes, sizeof bytes, "too short");
+    put_number(bytes + 16, 4);
+    put_number(bytes + 20, 4);
+    put_number(bytes + 29, (uint32_t)crc32(0, bytes + 12, 17));
+    memcpy(bytes + 33, "\x48\0\0\0sPLT", 8);
+    refused_at_once(bytes, sizeof bytes, "Read Error");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_over_background_8), cmocka_unit_test(test_straight_alpha_16),
         cmocka_unit_test(test_raw_and_digest),    cmocka_unit_test(test_nothing_half_written),
         cmocka_unit_test(test_unwritable),        cmocka_unit_test(test_link),
-        cmocka_unit_test(test_bad_png),
+        cmocka_unit_test(test_bad_png),           cmocka_unit_test(test_png_bombs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -71,6 +71,7 @@ static void test_bad_files(void **state)
         {"1 0 0 0 0\n1 0 0 0 1\n", ":2: value 1 is not above"},
         {"1 0 0 0 0\n# normalized\n", ":2: `# normalized` must come before"},
         {"# normalized\n2 0 0 0 0\n", "value is '2' but must be a number from 0 to 1"},
+        {"3 0 0 0 0\n1 0 0 0 1\n", ":2: value 1 is not above"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         transfer t;

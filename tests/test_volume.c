@@ -146,10 +146,14 @@ static void nrrd_refusals(void **state)
         {"type: what\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n", COUNT, "what"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: hex\n\n", COUNT, "encoding is hex"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 0 1\nencoding: raw\n\n", COUNT, "spacing"},
+        {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 1e30 1\nencoding: raw\n\n", COUNT, "differ by more"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 inf 1\nencoding: raw\n\n", COUNT, ""},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspace: RAS\nspace directions: (0,0,0) (0,1,0) (0,0,1)\n"
          "encoding: raw\n\n",
          COUNT, "spacing along x"},
+        {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspace: RAS\nspace directions: (1,0,0) (2,0,0) (0,0,1)\n"
+         "encoding: raw\n\n",
+         COUNT, "has no rotation"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: raw\ndata file: missing.raw\n\n", 0, "NRRD"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: raw\ndata file: %d.raw 1 3 1\n\n", 0, "several"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: raw\ndata file: LIST\na\nb\n", 0, "several"},

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <nifti2_io.h>
+#include <stdio.h>
 #include <string.h>
 
 static nifti_1_header nifti1(volume_type type, const char *magic)
@@ -39,6 +40,11 @@ static void nifti_types(void **state)
                 put(*state, zip ? "z.img.gz" : "p.img", "", 0, data, bytes, zip);
             const char *name = pair ? (zip ? "z.hdr.gz" : "p.hdr") : (zip ? "n.nii.gz" : "n.nii");
             check_pattern(put_nifti1(*state, name, &h, data, pair ? 0 : bytes, zip), NULL, (volume_type)type, "nifti");
+            if (pair) {
+                fixture *f = *state;
+                snprintf(f->path, sizeof f->path, "%s/%s", f->directory, zip ? "z.img.gz" : "p.img");
+                check_pattern(f->path, NULL, (volume_type)type, "nifti");
+            }
         }
     nifti_1_header h = nifti1(VOLUME_FLOAT32, "n+1");
     h.datatype = DT_FLOAT64;
@@ -90,7 +96,7 @@ static void nifti_refusals(void **state)
     unsigned char data[COUNT + 1];
     encode(VOLUME_UINT8, false, false, data);
     const nifti_1_header good = nifti1(VOLUME_UINT8, "n+1");
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 16; i++) {
         nifti_1_header h = good;
         size_t bytes = COUNT;
         const char *part = "";
@@ -105,11 +111,26 @@ static void nifti_refusals(void **state)
         case 7: h.datatype = DT_INT64, part = "datatype"; break;
         case 8: h.datatype = 12345, part = "datatype"; break;
         case 9: h.vox_offset = NAN, part = "vox_offset"; break;
-        case 10: bytes = COUNT - 1, part = "59 bytes"; break;
+        case 10: h.pixdim[2] = -1, part = "spacing along y, is -1, must be above 0"; break;
+        case 11: h.sform_code = 1, part = "has no rotation"; break;
+        case 12:
+            h.sform_code = 1;
+            h.srow_x[0] = h.srow_y[1] = h.srow_z[1] = 1; /* two axes run one way */
+            part = "has no rotation";
+            break;
+        case 13: h.sform_code = 1, h.srow_x[0] = h.srow_y[1] = 1, h.srow_z[2] = NAN, part = "has no rotation"; break;
+        case 14: bytes = COUNT - 1, part = "59 bytes"; break;
         default: bytes = COUNT + 1, part = "61 bytes";
         }
         refused(put_nifti1(*state, "r.nii", &h, data, bytes, false), NULL, part);
     }
+    const volume_options no_orient = {.no_orient = true};
+    nifti_1_header flat = good;
+    flat.sform_code = 1;
+    check_geometry(put_nifti1(*state, "flat.nii", &flat, data, COUNT, false), &no_orient, (const double[]){0.5, 2, 1.5},
+                   (const int[]){0, 1, 2}, (const int[]){1, 1, 1});
+    put(*state, "raw.img", "", 0, data, COUNT, false); /* an .img without a header is raw */
+    check_pattern(((fixture *)*state)->path, &(volume_options){.dims_vox = {W, H, D}}, VOLUME_UINT8, "raw");
     nifti_1_header pair = nifti1(VOLUME_UINT8, "ni1");
     refused(put_nifti1(*state, "lonely.hdr", &pair, data, 0, false), NULL, "lonely");
     nifti_1_header large = good;

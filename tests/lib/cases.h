@@ -1,0 +1,41 @@
+/* cases.h - random cases for the machine: a volume, a table, a view and a machine from one seed, the same on every
+ * platform. Corners are drawn more often than chance would: eyes on voxel borders, ties, odd sizes, values at both
+ * ends. */
+#ifndef TESTS_CASES_H
+#define TESTS_CASES_H
+
+#include <stdio.h>
+
+#include "camera.h"
+#include "rng.h"
+#include "vodr.h"
+
+typedef struct test_case {
+    uint64_t seed;
+    rng random;        /* where the next case_organise() goes on */
+    volume geometry;   /* what the camera needs: size, spacing, orientation; no voxels */
+    vodr_volume input; /* what the machine draws */
+    void *voxels;
+    uint16_t map[256];
+    vodr_table table;
+    vodr_rgba *entries;
+    camera eye;
+    vodr_view view;
+    vodr_machine machine; /* picture parameters random, organisation at its default */
+} test_case;
+
+/* Makes the case of a seed. False when the host is out of memory. After any outcome case_free() may be called. */
+bool case_make(uint64_t seed, test_case *c);
+void case_free(test_case *c);
+
+/* Draws every organisation parameter but the traversal anew, such that the machine can be built for the case's volume.
+ */
+void case_organise(test_case *c, vodr_machine *machine);
+
+/* Gives a machine about as much texture memory as its bricks need, or too small a cache: it may not be buildable. */
+void case_spoil(test_case *c, vodr_machine *machine);
+
+/* Writes what is needed to see the case: seed, volume, view, machine. */
+void case_print(FILE *file, const test_case *c, const vodr_machine *machine);
+
+#endif

@@ -1,0 +1,42 @@
+/* rng.h - splitmix64: the same numbers from the same seed everywhere.
+ *
+ * C leaves the order of operands and arguments open: no expression may hold two draws unless one is an argument of the
+ * other, or ?:, && or || lies between. */
+#ifndef TESTS_RNG_H
+#define TESTS_RNG_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct rng {
+    uint64_t state;
+} rng;
+
+static inline uint64_t rng_next(rng *r)
+{
+    uint64_t z = r->state += 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+/* An integer from lo to hi, both included. */
+static inline int64_t rng_int(rng *r, int64_t lo, int64_t hi)
+{
+    return lo + (int64_t)(rng_next(r) % (uint64_t)(hi - lo + 1));
+}
+
+/* True once in n. */
+static inline bool rng_one_in(rng *r, int64_t n)
+{
+    return rng_int(r, 1, n) == 1;
+}
+
+/* A double from lo up to hi, without rounding but the last. */
+static inline double rng_real(rng *r, double lo, double hi)
+{
+    return lo + (hi - lo) * ((double)(rng_next(r) >> 11) * 0x1p-53);
+}
+
+#endif
