@@ -1,11 +1,9 @@
 /* render.c - `vodr render`: a volume through the machine into a picture, its statistics, and the machine's inputs. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "commands.h"
+#include "draw.h"
 #include "image.h"
 #include "registers.h"
 #include "stats.h"
@@ -51,80 +49,6 @@ static const option rows[] = {
     {"repeat", 0, "N", false, set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
 };
 static const option_table table = {"Output (none is required):", rows, sizeof rows / sizeof *rows};
-
-/* ---- drawing ---- */
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
-typedef struct progress_line {
-    double begin_s;
-    int percent; /* as shown; -1: nothing yet */
-} progress_line;
-
-/* Runs of less than a second stay silent. */
-static void show_progress(void *context, double done)
-{
-    progress_line *line = context;
-    int percent = (int)(100 * done);
-    if (percent == line->percent || now_s() - line->begin_s < 1)
-        return;
-    fprintf(stderr, "\rdrawing: %3d %%", percent);
-    line->percent = percent;
-}
-
-static int compare_times(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *times, int count)
-{
-    qsort(times, (size_t)count, sizeof *times, compare_times);
-    return (times[(count - 1) / 2] + times[count / 2]) / 2;
-}
-
-static host_status draw_once(const scene *s, const vodr_options *how, result *r, double *wall_s, host_error *error)
-{
-    vodr_error reason;
-    vodr_frame_free(&r->frame);
-    double begin_s = now_s();
-    vodr_status status =
-        vodr_render(&s->machine, &s->densities, &s->table, &s->view, how, &r->frame, &r->counters, &reason);
-    *wall_s = now_s() - begin_s;
-    if (status == VODR_OK)
-        return HOST_OK;
-    return host_fail(error, status == VODR_NO_MEMORY ? HOST_ENVIRONMENT : HOST_BAD_INPUT, "%s", reason.text);
-}
-
-/* Draws `repeat` times; the frame and counters are those of the last, all being equal. */
-static host_status draw(const scene *s, const render_options *options, result *r, host_error *error)
-{
-    progress_line line = {.begin_s = now_s(), .percent = -1};
-    vodr_options how = {.threads = options->view.threads};
-    if (isatty(STDERR_FILENO)) {
-        how.progress = show_progress;
-        how.progress_context = &line;
-    }
-    double *times = malloc((size_t)options->repeat * sizeof *times);
-    if (!times)
-        return host_fail(error, HOST_ENVIRONMENT, "no memory");
-    host_status status = HOST_OK;
-    for (int i = 0; status == HOST_OK && i < options->repeat; i++)
-        status = draw_once(s, &how, r, &times[i], error);
-    if (line.percent >= 0)
-        fputs("\r              \r", stderr);
-    if (status == HOST_OK)
-        r->wall_s = median(times, options->repeat);
-    r->repeat = options->repeat;
-    free(times);
-    return status == HOST_OK ? digest_frame(&r->frame, r->frame_sha256, error) : status;
-}
 
 /* ---- output ---- */
 
@@ -229,12 +153,15 @@ static host_status render(const char *path, const render_options *options, host_
 {
     scene s;
     result r = {.repeat = 0};
+    const view_options *v = &options->view;
+    draw_options how = {
+        .label = "drawing", .threads = v->threads, .path = v->path, .simd = v->simd, .repeat = options->repeat};
     host_status status = check_outputs(options, error);
     if (status == HOST_OK)
         status = scene_open(path, &options->view, &s, error);
     if (status != HOST_OK)
         return status;
-    status = draw(&s, options, &r, error);
+    status = draw(&s, &s.machine, &how, &r, error);
     bool summary = wants_summary(options);
     if (status == HOST_OK)
         status = write_outputs(options, &s, &r, error);

@@ -29,9 +29,9 @@ static json_t *integer(uint64_t value)
     return json_integer((json_int_t)value);
 }
 
-/* The machine's counters, in the order of vodr_counters, added to `root`. */
-static int add_counters(json_t *root, const vodr_counters *c)
+json_t *stats_counters(const vodr_counters *c)
 {
+    json_t *object = json_object();
     double hit_rate = stats_hit_rate(c);
     const struct {
         const char *name;
@@ -58,22 +58,32 @@ static int add_counters(json_t *root, const vodr_counters *c)
     };
     int failed = 0;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        failed |= json_object_set_new(root, rows[i].name, rows[i].value);
-    return failed;
+        failed |= json_object_set_new(object, rows[i].name, rows[i].value);
+    if (!failed)
+        return object;
+    json_decref(object);
+    return NULL;
 }
 
-host_status stats_write(output *o, const scene *s, const view_options *options, const result *r, host_error *error)
+json_t *stats_json(const scene *s, const view_options *options, const result *r)
 {
     json_t *root = json_pack("{s:s, s:s, s:o, s:o, s:o}", "schema", "vodr-stats-1", "version", VODR_VERSION, "machine",
                              json_machine(s->machine_name, &s->machine), "volume", json_volume(s, options), "view",
                              view_object(s));
+    json_t *counters = stats_counters(&r->counters);
     json_t *rest = json_pack("{s:i, s:n, s:n, s:n, s:s, s:i, s:i, s:f, s:f}", "slices", (int)s->view.slices, "cycles",
                              "stalls", "bottleneck", "frame_sha256", r->frame_sha256, "threads", (int)options->threads,
                              "repeat", r->repeat, "wall_s", r->wall_s, "fragments_per_s", stats_fragments_per_s(r));
-    if (add_counters(root, &r->counters) != 0 || json_object_update(root, rest) != 0) {
+    if (json_object_update(root, counters) != 0 || json_object_update(root, rest) != 0) {
         json_decref(root);
         root = NULL;
     }
+    json_decref(counters);
     json_decref(rest);
-    return json_write(o, root, error);
+    return root;
+}
+
+host_status stats_write(output *o, const scene *s, const view_options *options, const result *r, host_error *error)
+{
+    return json_write(o, stats_json(s, options, r), error);
 }

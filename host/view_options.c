@@ -88,6 +88,38 @@ static host_status set_threads(void *target, const option *o, const char *value,
     return HOST_OK;
 }
 
+/* The index of `value` among `count` words; -1: it is none of them. */
+static int find_word(const char *value, const char *const *words, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (strcmp(value, words[i]) == 0)
+            return i;
+    return -1;
+}
+
+static host_status set_path(void *target, const option *o, const char *value, host_error *error)
+{
+    static const char *const words[] = {[VODR_PATH_FAST] = "fast", [VODR_PATH_BLOCKS] = "blocks"};
+    int path = find_word(value, words, COUNT(words));
+    if (path < 0)
+        return option_refuse(o, value, "fast or blocks", error);
+    ((view_options *)target)->path = (vodr_path)path;
+    return HOST_OK;
+}
+
+static host_status set_simd(void *target, const option *o, const char *value, host_error *error)
+{
+    static const char *const words[] = {[VODR_SIMD_BEST] = "best",
+                                        [VODR_SIMD_PORTABLE] = "portable",
+                                        [VODR_SIMD_AVX2] = "avx2",
+                                        [VODR_SIMD_AVX512] = "avx512"};
+    int simd = find_word(value, words, COUNT(words));
+    if (simd < 0)
+        return option_refuse(o, value, "best, portable, avx2 or avx512", error);
+    ((view_options *)target)->simd = (vodr_simd)simd;
+    return HOST_OK;
+}
+
 static host_status set_machine(void *target, const option *o, const char *value, host_error *error)
 {
     (void)o, (void)error;
@@ -158,12 +190,17 @@ static const option view_rows[] = {
     {"slices", 0, "N", false, set_slices, "slices, 1 to 16384 (the volume's own depth, at most 512)"},
     {"tf", 0, "NAME|FILE", false, set_transfer,
      "transfer function: ramp, bone, skin-bone, vessels, mri,\n"
-     "or a text file of lines `value r g b a` (ramp)"},
+     "or a file: lines `value r g b a`, or a colour map that\n"
+     "ParaView exported (ramp)"},
     {"window", 0, "LO:HI", false, set_window,
      "values that become the least and the greatest density\n"
      "(the data's range; for CT in Hounsfield units the\n"
      "transfer function's own window)"},
     {"threads", 0, "N", false, set_threads, "threads to draw with, 0 = all cores (0)"},
+    {"path", 0, "PATH", false, set_path, "fast, or blocks: block by block on one thread (fast)"},
+    {"simd", 0, "SET", false, set_simd,
+     "instructions of the fast path: best, portable, avx2,\n"
+     "avx512 (best)"},
 };
 const option_table option_view = {"View:", view_rows, COUNT(view_rows)};
 
@@ -182,7 +219,9 @@ static const option volume_rows[] = {
     {"crop", 0, "x0:x1,y0:y1,z0:z1", false, set_volume, "draw these voxels only, in the file's axes (all)"},
     {"no-orient", 0, NULL, false, set_volume, "leave out the file's orientation"},
     {"dims", 0, "XxYxZ", false, set_volume, "raw file: voxels, x fastest"},
-    {"type", 0, "TYPE", false, set_volume, "raw file: uint8, int8, uint16, int16, float32 (uint8)"},
+    {"type", 0, "TYPE", false, set_volume,
+     "raw file: uint8, int8, uint16, int16, uint32, int32 or\n"
+     "float32 (uint8)"},
     {"spacing", 0, "X,Y,Z", false, set_volume, "raw file: size of a voxel (1,1,1)"},
     {"endian", 0, "ORDER", false, set_volume, "raw file: little or big (little)"},
 };

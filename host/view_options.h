@@ -25,6 +25,8 @@ typedef struct view_options {
     machine_override *overrides;
     size_t override_count;
     int32_t threads; /* 0 = all cores */
+    vodr_path path;
+    vodr_simd simd;
     uint8_t background[3];
     bool alpha;
 } view_options;

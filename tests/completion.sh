@@ -1,0 +1,91 @@
+#!/bin/sh
+# completion.sh - scripts/vodr-completion.bash offers what the program's own help and machines name.
+#   tests/completion.sh VODR    a line a check, then "N passed, N failed"; exit 1 when any failed
+set -u
+
+if [ $# -ne 1 ] || [ ! -x "$1" ]; then
+    echo "usage: tests/completion.sh VODR (a program that can be run)" >&2
+    exit 2
+fi
+vodr=$(CDPATH='' cd "$(dirname "$1")" && pwd)/$(basename "$1")
+root=$(CDPATH='' cd "$(dirname "$0")/.." && pwd)
+passed=0
+failed=0
+
+if ! command -v bash >/dev/null; then
+    echo 'skip completion: bash is not installed'
+    echo '0 passed, 0 failed'
+    exit 0
+fi
+work=$(mktemp -d "${TMPDIR:-/tmp}/vodr-completion-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+cd "$work" || exit 1
+touch volume.nrrd
+
+# The replies to a line typed after the program's name, one a line, sorted.
+replies() {
+    # shellcheck disable=SC2016
+    bash -c '. "$1"
+        COMP_LINE="$2 $3"
+        COMP_POINT=${#COMP_LINE}
+        _vodr
+        printf "%s\n" "${COMPREPLY[@]}"' - "$root/scripts/vodr-completion.bash" "$vodr" "$1" | LC_ALL=C sort
+}
+
+# offers LINE WORD...: these and no others
+offers() {
+    line=$1
+    shift
+    got=$(replies "$line" | tr '\n' ' ')
+    want=$(printf '%s\n' "$@" | LC_ALL=C sort | tr '\n' ' ')
+    if [ "$got" = "$want" ]; then
+        passed=$((passed + 1))
+        echo "ok   vodr $line"
+    else
+        failed=$((failed + 1))
+        echo "FAIL vodr $line: offers '$got', not '$want'"
+    fi
+}
+
+# What the program says of itself, read here in another way than the completion does.
+commands=$("$vodr" --help | awk '/^$/ { block++ } block == 2 && NF { print $1 }')
+machines=$("$vodr" machine list | awk '{ print $1 }')
+parameters=$("$vodr" machine show paper-16 | awk '$2 == "=" { print $1 "=" }')
+
+values() { # PARAMETER
+    "$vodr" machine show paper-16 | awk -v name="$1" '$1 == name { gsub(/[,;]/, " ", $5); print $5 }'
+}
+
+# shellcheck disable=SC2046,SC2086
+{
+    offers '' $commands --help --version
+    for command in $commands; do
+        options=$("$vodr" "$command" --help | grep -E '^ +(-[a-z], )?--[a-z]' | grep -oE -e '--[a-z-]+' | sort -u)
+        offers "$command --" $options --help
+    done
+    offers 'render volume.nrrd --machine ' $machines volume.nrrd
+    offers 'machine ' list show
+    offers 'machine show ' $machines
+    offers 'render --set ' $parameters
+    offers 'report volume.nrrd --set=' $parameters
+    offers 'render --set fb_layout=' $(values fb_layout)
+    offers 'render --blend=' $(values blend)
+    offers 'render --filter ' $(values filter)
+    offers 'report --traversal ' $(values traversal)
+}
+offers 'rend' render
+offers 'render --set line_px=' ''
+offers 'render --traversal t' tile
+offers 'render --tf ' ramp bone skin-bone vessels mri volume.nrrd
+offers 'render --tf=sk' skin-bone
+offers 'render --endian ' little big
+offers 'render --projection pers' perspective perspective:
+offers 'render --zoom ' ''
+offers 'render vol' volume.nrrd
+offers 'render -o vol' volume.nrrd
+offers 'render --alpha vol' volume.nrrd
+offers 'info no-such' ''
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
