@@ -100,14 +100,14 @@ static void report(fused *f)
 
 static void draw_bands(fused *f, bool calling_thread)
 {
-    void *memory;
+    void *room;
     vodr_error error;
     int32_t y0_px, y1_px;
-    if (posix_memalign(&memory, _Alignof(fused_band), sizeof(fused_band)) != 0) {
+    if (posix_memalign(&room, _Alignof(fused_band), sizeof(fused_band)) != 0) {
         fail(f, vodr_fail(&error, VODR_NO_MEMORY, "no memory for a thread"), &error);
         return;
     }
-    fused_band *band = memory;
+    fused_band *band = room;
     vodr_status status = fused_band_start(band, &f->scene, &error);
     while (status == VODR_OK && take_band(f, &y0_px, &y1_px)) {
         status = fused_band_draw(band, y0_px, y1_px, &error);

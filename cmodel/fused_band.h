@@ -1,5 +1,5 @@
-/* fused_band.h - a band of the frame's rows, drawn by one thread with small bricks in visibility order (fuses volume_divider,
- * slice_generator, rasterizer, texture_unit and alpha_blender). */
+/* fused_band.h - a band of the frame's rows, drawn by one thread with small bricks in visibility order (fuses
+ * volume_divider, slice_generator, rasterizer, texture_unit and alpha_blender). */
 #ifndef VODR_FUSED_BAND_H
 #define VODR_FUSED_BAND_H
 

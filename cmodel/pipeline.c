@@ -17,12 +17,15 @@ typedef struct footprint {
 
 static void read_line(void *context, int64_t line, vodr_rgba *pixels)
 {
-    frame_buffer_read_line(context, line, pixels);
+    frame_buffer_read_line(&((pipeline *)context)->memory, line, pixels);
 }
 
 static void write_line(void *context, int64_t line, const vodr_rgba *pixels)
 {
-    frame_buffer_write_line(context, line, pixels);
+    pipeline *p = context;
+    frame_buffer_write_line(&p->memory, line, pixels);
+    if (p->clock && p->flushing)
+        cycles_flush_line(p->clock, line);
 }
 
 static int32_t count_bits(uint32_t bits)
@@ -30,21 +33,51 @@ static int32_t count_bits(uint32_t bits)
     return __builtin_popcount(bits);
 }
 
-/* How many of a run's fragments wrote their pixel, as the picture's marks tell. */
-static int32_t written_by_marks(pipeline *p, int32_t k, int32_t y, int32_t x, int32_t count)
+/* Which of a run's fragments wrote their pixel, as the picture's marks tell. */
+static uint32_t written_by_marks(pipeline *p, int32_t k, int32_t y, int32_t x, int32_t count)
 {
     if (!p->marks || !p->marks->written)
-        return count;
-    int32_t written = count_bits(marks_get(marks_row(p->marks, p->marks->written, k, y), x, count));
+        return (uint32_t)((UINT64_C(1) << count) - 1);
+    uint32_t written = marks_get(marks_row(p->marks, p->marks->written, k, y), x, count);
     if (p->machine->blend == VODR_BLEND_UNDER)
-        p->counters.terminated_fragments += (uint64_t)(count - written);
+        p->counters.terminated_fragments += (uint64_t)(count - count_bits(written));
+    return written;
+}
+
+/* Tells the clock of a run that was just blended; bit i of `written`: whether its fragment i wrote. */
+static void clock_run(pipeline *p, const span *s, int32_t from, int32_t to, int64_t line, uint32_t written)
+{
+    int32_t x = s->x0 + from, count = to - from;
+    const pixel_cache *c = &p->cache;
+    cycles_run_add(p->clock, &(cycle_run){.x = x,
+                                          .y = s->y,
+                                          .count = count,
+                                          .written = written,
+                                          .miss = c->missed,
+                                          .reads = c->missed && c->read,
+                                          .evicts = c->missed && c->evicted_dirty,
+                                          .line = line,
+                                          .victim = c->victim});
+}
+
+/* Blends a run; the bits of the pixels written. Which ones they are matters to a write-through cache's clock alone:
+ * else only how many bits are set does. */
+static uint32_t blend_pixels(pipeline *p, const vodr_rgba *source, int32_t count, vodr_rgba *pixels)
+{
+    uint64_t *terminated = &p->counters.terminated_fragments;
+    if (!p->clock || p->machine->write_policy != VODR_WRITE_POLICY_THROUGH)
+        return (uint32_t)((UINT64_C(1) << alpha_blender_run(&p->blender, source, count, pixels, terminated)) - 1);
+    uint32_t written = 0;
+    for (int32_t i = 0; i < count; i++)
+        written |= (uint32_t)alpha_blender_run(&p->blender, source + i, 1, pixels + i, terminated) << i;
     return written;
 }
 
 /* The fragments [from, to) of a span: one line, none of them dead. */
 static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32_t to)
 {
-    int32_t x = s->x0 + from, count = to - from, written;
+    int32_t x = s->x0 + from, count = to - from;
+    uint32_t written;
     int64_t line = line_number(&p->memory.layout, x, s->y);
     int32_t offset = line_offset(&p->memory.layout, x, s->y);
     uint64_t misses = p->cache.misses;
@@ -53,15 +86,17 @@ static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32
         p->observer->miss(p->observer->context, x, s->y);
     if (p->picture) {
         pixels += offset;
-        written = alpha_blender_run(&p->blender, p->fragments + from, count, pixels, &p->counters.terminated_fragments);
+        written = blend_pixels(p, p->fragments + from, count, pixels);
     } else {
         written = written_by_marks(p, k, s->y, x, count);
     }
+    if (p->clock)
+        clock_run(p, s, from, to, line, written);
     if (!written)
         return;
     pixel_cache_written(&p->cache);
     if (p->machine->write_policy == VODR_WRITE_POLICY_THROUGH)
-        frame_buffer_write_pixels(&p->memory, line, offset, pixels, count, written);
+        frame_buffer_write_pixels(&p->memory, line, offset, pixels, count, count_bits(written));
 }
 
 /* Where the line ends that holds fragment `from` of a span, cut to the span. */
@@ -94,11 +129,14 @@ static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, in
 {
     uint32_t alive = living(p, k, s, from, to);
     p->counters.killed_fragments += (uint64_t)(to - from - count_bits(alive));
-    while (alive) {
-        int32_t begin = __builtin_ctz(alive), end = begin;
-        while (end < 32 && alive >> end & 1)
-            alive &= ~(UINT32_C(1) << end++);
-        blend_run(p, k, s, from + begin, from + end);
+    for (int32_t begin = from, end; begin < to; begin = end) {
+        bool lives = alive >> (begin - from) & 1;
+        for (end = begin + 1; end < to && (alive >> (end - from) & 1) == lives; end++)
+            ;
+        if (lives)
+            blend_run(p, k, s, begin, end);
+        else if (p->clock)
+            cycles_run_add(p->clock, &(cycle_run){.x = s->x0 + begin, .y = s->y, .count = end - begin, .killed = true});
     }
 }
 
@@ -126,13 +164,46 @@ static void grow(px_rect *r, const span *s)
     r->y1 = s->y >= r->y1 ? s->y + 1 : r->y1;
 }
 
+/* Cycles of the divider since the visit before. */
+static int64_t divider_work(pipeline *p)
+{
+    int64_t work = p->candidates * p->machine->brick_setup_cycles + p->probed_rows;
+    p->candidates = p->probed_rows = 0;
+    return work;
+}
+
+/* Where bricks lie in memory: one after the other, each in the room of a whole one, rounded up to bursts. */
+static int64_t brick_address(const pipeline *p, size_t brick)
+{
+    int64_t bytes = density_bytes(p->machine), burst = p->machine->texture_burst_bytes;
+    for (int c = 0; c < 3; c++)
+        bytes *= p->divider.edge_vox[c] + 2 * filter_border_vox(p->machine);
+    return (int64_t)brick * ((bytes + burst - 1) / burst * burst);
+}
+
+/* A visit with `slices` slices before the one that has its first fragment. */
+static void clock_visit(pipeline *p, const candidate *c, int64_t load_bytes, int32_t slices)
+{
+    cycle_visit visit = {.load_bytes = load_bytes, .load_address = brick_address(p, c->brick)};
+    visit.work_cycles = divider_work(p);
+    cycles_visit(p->clock, &visit);
+    for (int32_t i = 0; i < slices; i++) {
+        cycles_slice(p->clock);
+        cycles_rows(p->clock, p->leading_rows[i]);
+    }
+    cycles_slice(p->clock);
+}
+
 /* A candidate becomes a visit at its first fragment. */
-static void begin_visit(pipeline *p, const candidate *c)
+static void begin_visit(pipeline *p, const candidate *c, int32_t slices)
 {
     p->counters.brick_visits++;
     p->counters.bricks += !p->seen[c->brick];
     p->seen[c->brick] = 1;
-    p->counters.texture_load_bytes += texture_unit_load(&p->texture, c->brick, &c->box);
+    uint64_t load_bytes = texture_unit_load(&p->texture, c->brick, &c->box);
+    p->counters.texture_load_bytes += load_bytes;
+    if (p->clock)
+        clock_visit(p, c, (int64_t)load_bytes, slices);
     if (!p->observer || !p->observer->visit)
         return;
     const px_rect *clip = &p->divider.tile;
@@ -144,26 +215,45 @@ static void begin_visit(pipeline *p, const candidate *c)
     p->observer->visit(p->observer->context, &visit);
 }
 
+/* Draws a slice; `index` slices of the candidate came before. */
+static void draw_slice(pipeline *p, const candidate *c, const brick_slice *slice, int32_t index, footprint *covered)
+{
+    rasterizer rows;
+    rasterizer_start(&rows, slice, &c->bound);
+    int32_t first_row = rows.y, next_row = rows.y;
+    bool visited = covered->slices > 0, any = false;
+    if (visited && p->clock)
+        cycles_slice(p->clock);
+    for (span s; rasterizer_next(&rows, &s); any = true) {
+        if (!any && !visited) {
+            p->probed_rows += s.y + 1 - first_row;
+            begin_visit(p, c, index);
+        }
+        if (p->clock)
+            cycles_rows(p->clock, s.y - next_row);
+        next_row = s.y + 1;
+        grow(&covered->px, &s);
+        draw_span(p, slice, &s);
+    }
+    int32_t rest = rows.bound.y1 - next_row;
+    if (p->clock && (visited || any))
+        cycles_rows(p->clock, rest);
+    if (p->clock && !visited && !any) {
+        p->leading_rows[index] = rest;
+        p->probed_rows += rest;
+    }
+    covered->slices += any;
+}
+
 static void draw_candidate(pipeline *p, const candidate *c)
 {
     slice_generator slices =
         slice_generator_start(p->view, &c->box, c->k0, c->k1, p->machine->blend == VODR_BLEND_UNDER);
     footprint covered = {.px = {INT32_MAX, INT32_MAX, 0, 0}};
     brick_slice slice;
-    while (slice_generator_next(&slices, &slice)) {
-        rasterizer rows;
-        rasterizer_start(&rows, &slice, &c->bound);
-        span s;
-        bool any = false;
-        while (rasterizer_next(&rows, &s)) {
-            if (!any && !covered.slices)
-                begin_visit(p, c);
-            any = true;
-            grow(&covered.px, &s);
-            draw_span(p, &slice, &s);
-        }
-        covered.slices += any;
-    }
+    p->candidates++;
+    for (int32_t index = 0; slice_generator_next(&slices, &slice); index++)
+        draw_slice(p, c, &slice, index, &covered);
     p->counters.brick_slices += covered.slices;
     int32_t limit = p->counters.tile_px;
     if (covered.slices && p->counters.brick_vox)
@@ -188,8 +278,7 @@ static vodr_status check_volume(const vodr_volume *v, const vodr_machine *m, vod
     return VODR_OK;
 }
 
-static vodr_status check_inputs(const vodr_machine *m, const vodr_volume *volume, const vodr_view *view,
-                                vodr_error *error)
+vodr_status pipeline_check(const vodr_machine *m, const vodr_volume *volume, const vodr_view *view, vodr_error *error)
 {
     vodr_status status = vodr_machine_check(m, error);
     if (status == VODR_OK)
@@ -217,17 +306,17 @@ static vodr_status start_blocks(pipeline *p, const vodr_volume *volume, const vo
     p->counters.brick_vox = edge;
     if (status == VODR_OK)
         status = frame_buffer_start(&p->memory, m, p->view, p->picture, error);
-    cache_memory memory = {.context = &p->memory, .read_line = read_line, .write_line = write_line};
+    cache_memory behind = {.context = p, .read_line = read_line, .write_line = write_line};
     if (status == VODR_OK)
-        status = pixel_cache_start(&p->cache, m, p->memory.layout.lines, p->picture, memory, error);
+        status = pixel_cache_start(&p->cache, m, p->memory.layout.lines, p->picture, behind, error);
     return status;
 }
 
 vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                           const vodr_view *view, bool picture, vodr_error *error)
+                           const vodr_view *view, bool picture, bool clock, vodr_error *error)
 {
     *p = (pipeline){.machine = machine, .view = view, .picture = picture};
-    vodr_status status = check_inputs(machine, volume, view, error);
+    vodr_status status = pipeline_check(machine, volume, view, error);
     if (status == VODR_OK)
         status = start_blocks(p, volume, table, error);
     if (status != VODR_OK)
@@ -238,7 +327,11 @@ vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_
     p->densities = malloc(width * sizeof *p->densities);
     p->fragments = malloc(width * sizeof *p->fragments);
     p->seen = calloc(bricks, 1);
-    if (!p->densities || !p->fragments || !p->seen)
+    if (clock) {
+        p->clock = cycles_start(machine, view);
+        p->leading_rows = malloc((size_t)view->slices * sizeof *p->leading_rows);
+    }
+    if (!p->densities || !p->fragments || !p->seen || (clock && (!p->clock || !p->leading_rows)))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of %zu bricks", bricks);
     p->counters.tile_px = tile_px(machine);
     return VODR_OK;
@@ -263,8 +356,11 @@ bool pipeline_step(pipeline *p)
         draw_candidate(p, &c);
         return true;
     }
+    p->flushing = true;
     pixel_cache_flush(&p->cache);
     gather_counters(p);
+    if (p->clock)
+        p->failed = !cycles_finish(p->clock, divider_work(p), &p->counters.cycles);
     return false;
 }
 
@@ -279,6 +375,8 @@ void pipeline_finish(pipeline *p)
     free(p->densities);
     free(p->fragments);
     free(p->seen);
+    free(p->leading_rows);
+    cycles_free(p->clock);
     pixel_cache_finish(&p->cache);
     frame_buffer_finish(&p->memory);
     volume_divider_finish(&p->divider);

@@ -3,6 +3,7 @@
 #define VODR_PIPELINE_H
 
 #include "alpha_blender.h"
+#include "cycles.h"
 #include "frame_buffer.h"
 #include "marks.h"
 #include "pixel_cache.h"
@@ -23,8 +24,13 @@ typedef struct pipeline {
     vodr_rgba *fragments; /* likewise */
     uint8_t *seen;        /* by brick: visited before */
     vodr_counters counters;
-    const marks *marks;            /* without a picture: what a picture drawn before tells; set it as the observer */
-    const vodr_observer *observer; /* set it after pipeline_start(); NULL: nobody */
+    const marks *marks;              /* without a picture: what a picture drawn before tells; set it as the observer */
+    cycles *clock;                   /* counts cycles; NULL: nobody does */
+    bool failed;                     /* memory ran out while it did */
+    bool flushing;                   /* what is written now is the flush at the frame's end */
+    int64_t candidates, probed_rows; /* since the last visit: the divider's work */
+    int32_t *leading_rows;           /* of a candidate's slices before its first fragment */
+    const vodr_observer *observer;   /* set it after pipeline_start(); NULL: nobody */
 } pipeline;
 
 /* Checks every input and prepares a frame. With `picture` false the walk leaves out densities, colours and pixels and
@@ -32,7 +38,10 @@ typedef struct pipeline {
  * geometry alone suffices; otherwise it needs the marks of the finished picture. The inputs must outlive the pipeline.
  * Free with pipeline_finish() in either case. */
 vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                           const vodr_view *view, bool picture, vodr_error *error);
+                           const vodr_view *view, bool picture, bool clock, vodr_error *error);
+
+/* Whether a machine can be built and draw a volume and a view; the sentence says why not. */
+vodr_status pipeline_check(const vodr_machine *m, const vodr_volume *volume, const vodr_view *view, vodr_error *error);
 
 /* Draws the next candidate of the divider; false when the frame is done, flushed and counted. */
 bool pipeline_step(pipeline *p);

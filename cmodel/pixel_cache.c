@@ -82,6 +82,9 @@ static void write_back(pixel_cache *c, cache_line *line)
 
 static void fill(pixel_cache *c, cache_line *line, int64_t number)
 {
+    c->evicted_dirty = line->number >= 0 && line->dirty;
+    c->victim = line->number;
+    c->read = !(c->clear_on_first_touch && !c->touched[number]);
     if (line->number >= 0) {
         write_back(c, line);
         c->where[line->number] = -1;
@@ -90,7 +93,7 @@ static void fill(pixel_cache *c, cache_line *line, int64_t number)
     c->where[number] = (int32_t)(line - c->lines);
     vodr_rgba *pixels = pixels_of(c, line);
     *line = (cache_line){.number = number, .stamp = c->clock};
-    if (c->clear_on_first_touch && !c->touched[number]) {
+    if (!c->read) {
         c->touched[number] = 1;
         for (int32_t i = 0; pixels && i < c->line_pixels; i++)
             pixels[i] = (vodr_rgba){0};
@@ -103,6 +106,7 @@ vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count)
 {
     c->clock++;
     int32_t at = c->where[line];
+    c->missed = at < 0;
     c->hits += (uint64_t)count - (at < 0);
     if (at < 0) {
         c->misses++;

@@ -30,7 +30,9 @@ typedef struct pixel_cache {
     uint8_t *touched;  /* by line number: whether it missed before in this frame; clear_on_first_touch only */
     uint64_t clock;
     uint32_t lfsr;
-    cache_line *last; /* of the last access */
+    cache_line *last;                 /* of the last access */
+    bool missed, evicted_dirty, read; /* the last access: missed; a dirty line left; its own was read, not cleared */
+    int64_t victim;                   /* the dirty line that left */
     uint64_t hits, misses, evictions, writebacks;
 } pixel_cache;
 

@@ -1,6 +1,8 @@
 /* render.c - vodr_render(): chooses who draws. */
 #include <stdlib.h>
 
+#include "clocked.h"
+#include "error.h"
 #include "fused.h"
 #include "pipeline.h"
 #include "vodr.h"
@@ -27,12 +29,20 @@ vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, 
     *counters = (vodr_counters){0};
     if (!options)
         options = &defaults;
+    if (options->path == VODR_PATH_CLOCKED) {
+        vodr_status checked = pipeline_check(machine, volume, view, error);
+        return checked == VODR_OK ? clocked_render(machine, volume, table, view, frame, counters, error) : checked;
+    }
     bool fast = options->path == VODR_PATH_FAST && fused_supports(machine, view);
     pipeline p;
-    vodr_status status = pipeline_start(&p, machine, volume, table, view, !fast, error);
+    vodr_status status = pipeline_start(&p, machine, volume, table, view, !fast, options->cycles, error);
     p.observer = options->observer;
     if (status == VODR_OK)
         status = fast ? fused_render(&p, volume, options, frame, error) : draw_blocks(&p, options, frame, error);
+    if (status == VODR_OK && p.failed) {
+        status = vodr_fail(error, VODR_NO_MEMORY, "no memory to count cycles");
+        vodr_frame_free(frame);
+    }
     if (status == VODR_OK)
         *counters = p.counters;
     pipeline_finish(&p);

@@ -119,6 +119,44 @@ vodr_status vodr_view_check(const vodr_view *view, const int32_t dims_vox[3], vo
 
 /* ---- a frame ---- */
 
+/* The blocks, in the order of Figure 2. */
+typedef enum vodr_block {
+    VODR_BLOCK_VOLUME_DIVIDER,
+    VODR_BLOCK_SLICE_GENERATOR,
+    VODR_BLOCK_RASTERIZER,
+    VODR_BLOCK_TEXTURE_UNIT,
+    VODR_BLOCK_ALPHA_BLENDER,
+    VODR_BLOCK_PIXEL_CACHE,
+    VODR_BLOCK_FRAME_BUFFER,
+    VODR_BLOCK_COUNT,
+} vodr_block;
+
+/* Why a block waits (docs/timing.md). */
+typedef enum vodr_stall {
+    VODR_STALL_DIVIDER,       /* the divider: the slice generator has not taken the last brick */
+    VODR_STALL_SLICE,         /* the slice generator: the rasterizer has not taken the last slice */
+    VODR_STALL_TEXTURE_LOAD,  /* rasterizer and texture unit: the brick is not in texture memory yet */
+    VODR_STALL_FRAGMENT_FIFO, /* rasterizer and texture unit: no room before the alpha blender */
+    VODR_STALL_CACHE,         /* the alpha blender: the pixel cache takes no access */
+    VODR_STALL_HAZARD,        /* the alpha blender, or a non-blocking cache: the pixel is still being blended */
+    VODR_STALL_WRITE_BACK,    /* the pixel cache: the replaced line has to leave first */
+    VODR_STALL_FILL,          /* the pixel cache: the line is on its way */
+    VODR_STALL_DRAM_ROW,      /* the frame buffer: a row closes and opens */
+    VODR_STALL_DRAM_REFRESH,  /* the frame buffer: the memory refreshes */
+    VODR_STALL_COUNT,
+} vodr_stall;
+
+/* A block's cycles: busy + stalled + idle = total. */
+typedef struct vodr_block_cycles {
+    uint64_t busy, stalled, idle;
+} vodr_block_cycles;
+
+typedef struct vodr_cycles {
+    uint64_t total; /* 0: not asked for */
+    vodr_block_cycles blocks[VODR_BLOCK_COUNT];
+    uint64_t stalls[VODR_STALL_COUNT];
+} vodr_cycles;
+
 typedef struct vodr_counters {
     uint64_t fragments;            /* samples inside the volume, in bricks that were visited */
     uint64_t killed_fragments;     /* of these, dropped by kill_transparent before the pixel cache */
@@ -136,6 +174,7 @@ typedef struct vodr_counters {
     uint64_t skipped_bricks; /* bricks that skip_empty left out, whether or not on the screen */
     int32_t brick_vox;       /* edge of a brick; 0 when the volume is drawn whole */
     int32_t tile_px;         /* T */
+    vodr_cycles cycles;
 } vodr_counters;
 
 /* Which program draws the frame. */
@@ -143,6 +182,7 @@ typedef enum vodr_path {
     VODR_PATH_FAST,   /* blocks joined in one loop, where the machine allows it (docs/fast-path.md), else block by block
                        */
     VODR_PATH_BLOCKS, /* block by block, one fragment after the other: the slow truth */
+    VODR_PATH_CLOCKED, /* every block clocked, cycle by cycle: the slow truth of cycles */
 } vodr_path;
 
 /* Which instructions the fast path may use; one the computer lacks falls back to the next lower. */
@@ -173,6 +213,7 @@ typedef struct vodr_options {
     int32_t threads; /* at least 1; 0 = as many as the machine has cores */
     vodr_path path;
     vodr_simd simd;
+    bool cycles; /* count cycles too */
     /* Called now and then from the calling thread with the done share, 0 to 1; NULL for silence. */
     void (*progress)(void *context, double done);
     void *progress_context;

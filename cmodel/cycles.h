@@ -1,0 +1,43 @@
+/* cycles.h - a frame's cycles from recurrences over slices, rows, runs and bus grants instead of from clocking
+ * registers (docs/timing.md). Fed by the machine's own walk, in its order; equal to the clocked machine, cycle for
+ * cycle. */
+#ifndef VODR_CYCLES_H
+#define VODR_CYCLES_H
+
+#include "memory.h"
+#include "vodr.h"
+
+/* A brick visit as the divider hands it on. */
+typedef struct cycle_visit {
+    int64_t work_cycles;  /* of the divider, since the visit before */
+    int64_t load_bytes;   /* 0: nothing to load */
+    int64_t load_address; /* of the brick in memory */
+} cycle_visit;
+
+/* Consecutive fragments in one line of the pixel cache, one access each. */
+typedef struct cycle_run {
+    int32_t x, y, count; /* at most 32 when handed over */
+    uint32_t written;    /* bit i: fragment i writes its pixel */
+    bool killed;         /* dropped by kill_transparent: they make no access */
+    bool miss;           /* the first of them missed, */
+    bool reads;          /* and its line is read, not filled with zeros */
+    bool evicts;         /* and a dirty line has to leave */
+    int64_t line, victim;
+} cycle_run;
+
+typedef struct cycles cycles;
+
+cycles *cycles_start(const vodr_machine *m, const vodr_view *view);
+
+void cycles_visit(cycles *c, const cycle_visit *v); /* the first slice of the visit follows */
+void cycles_slice(cycles *c);
+void cycles_rows(cycles *c, int32_t count); /* rows without fragments */
+void cycles_run_add(cycles *c, const cycle_run *run);
+void cycles_flush_line(cycles *c, int64_t line); /* a dirty line at the frame's end, after the last run */
+
+/* The end of the frame: work_cycles of the divider after the last visit. False when memory ran out on the way. */
+bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result);
+
+void cycles_free(cycles *c);
+
+#endif
