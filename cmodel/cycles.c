@@ -18,12 +18,14 @@ static const int64_t UNKNOWN = INT64_MIN;
 
 typedef enum op_kind { OP_SLICE, OP_ROWS, OP_RUN } op_kind;
 
-/* What the rasterizer does next. */
+/* What the rasterizer does next. Most runs hit, and of those no more than their pixels matters. */
 typedef struct cycle_op {
     op_kind kind;
-    int32_t rows;
+    int32_t count; /* rows, or fragments */
+    int32_t x, y;
     bool slice_start; /* a run: the first of its slice */
-    cycle_run run;
+    bool killed, miss;
+    int32_t detail; /* its number among details; -1: none */
 } cycle_op;
 
 /* `count` fragments of a run from its fragment `offset` on, fragment n of them at `cycle` + n. */
@@ -50,10 +52,10 @@ typedef struct departure {
     int64_t line, granted;
 } departure;
 
-/* A pixel that was read not long ago. */
+/* Pixels of a row that were read not long ago, one a cycle. */
 typedef struct recent {
     int32_t x, y;
-    int64_t cycle;
+    int64_t count, cycle;
 } recent;
 
 RING(segment_ring, segment)
@@ -81,8 +83,10 @@ struct cycles {
 
     cycle_op *ops; /* of the visit worked on; unless eager, all of them, once the next visit is known */
     size_t op_count, op_room, op_next;
-    int32_t op_done; /* fragments of ops[op_next] accepted */
-    bool new_slice;  /* the next run added begins a slice */
+    int32_t op_done;    /* fragments of ops[op_next] accepted */
+    bool new_slice;     /* the next run added begins a slice */
+    cycle_run *details; /* of its runs: those that missed, or all when writing through */
+    size_t detail_count, detail_room;
     visit_state visits[VISITS];
     int64_t announced, current;              /* numbers of visits; -1: none */
     bool loading;                            /* the current visit's first fragment has not been accepted */
@@ -100,8 +104,8 @@ struct cycles {
     stretch_ring reads;    /* by access */
     cycle_ring miss_reads; /* by miss, from number miss_first on */
     int64_t tag_count, read_count, last_read, miss_tags, miss_first;
-    recent *recents; /* the last blend_cycles accesses and some more, a ring */
-    int64_t recent_mask;
+    recent *recents; /* the last ones, that hold blend_cycles pixels or more; a ring */
+    int64_t recent_count, recent_mask;
     int64_t slice_reads;
 
     miss_state miss;
@@ -195,10 +199,21 @@ static void take_slice(cycles *c)
     c->n.blocks[VODR_BLOCK_RASTERIZER].busy++;
 }
 
+static cycle_run run_of(const cycles *c, const cycle_op *op)
+{
+    cycle_run run = {.killed = op->killed};
+    if (op->detail >= 0)
+        run = c->details[op->detail];
+    run.x = op->x;
+    run.y = op->y;
+    run.count = op->count;
+    return run;
+}
+
 /* Offers the rest of a run; false when it is unknown when the texture unit accepts it. */
 static bool offer(cycles *c, const cycle_op *op)
 {
-    int64_t cycle = c->raster, length = op->run.count - c->op_done, number = c->accepted - c->m->fragment_fifo;
+    int64_t cycle = c->raster, length = op->count - c->op_done, number = c->accepted - c->m->fragment_fifo;
     if (c->loading) {
         const visit_state *v = visit_at(c, c->current);
         if (v->loaded == UNKNOWN)
@@ -215,8 +230,8 @@ static bool offer(cycles *c, const cycle_op *op)
     c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(cycle - c->raster);
     c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(open - cycle);
     c->loading = false;
-    keep(c, segment_ring_push(&c->door,
-                              (segment){op->run, op->slice_start && !c->op_done, c->op_done, (int32_t)length, open}));
+    keep(c, segment_ring_push(
+                &c->door, (segment){run_of(c, op), op->slice_start && !c->op_done, c->op_done, (int32_t)length, open}));
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
@@ -241,23 +256,24 @@ static void settle_loads(cycles *c)
 
 /* ---- what moves as one ---- */
 
-static void read_pixels(cycles *c, const segment *s, int32_t count, int64_t cycle);
+static void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count, int64_t cycle);
 static void pop(cycles *c, int32_t count, int64_t cycle);
 static void begin_miss(cycles *c, int64_t cycle);
 static bool resolve_miss(cycles *c, const segment *s);
 static bool grant(cycles *c);
 
 /* Whether the first of `count` accesses from (x, y) on could find their pixel still being blended. */
-static bool may_conflict(const cycles *c, const segment *s, int64_t count)
+static bool may_conflict(const cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count)
 {
-    int64_t window = c->m->blend_cycles, reads = s->slice_start ? 0 : c->slice_reads;
+    int64_t window = c->m->blend_cycles, reads = slice_start ? 0 : c->slice_reads, seen = 0;
     if (reads >= window)
         return false;
-    int32_t x = s->run.x + s->offset, end = x + (int32_t)(count < window - reads ? count : window - reads);
-    for (int64_t n = c->read_count - 1; n >= 0 && n >= c->read_count - window; n--) {
+    int64_t end = x + (count < window - reads ? count : window - reads);
+    for (int64_t n = c->recent_count - 1; n >= 0 && seen < window; n--) {
         const recent *r = &c->recents[n & c->recent_mask];
-        if (r->y == s->run.y && r->x >= x && r->x < end)
+        if (r->y == y && r->x < end && r->x + r->count > x)
             return true;
+        seen += r->count;
     }
     return false;
 }
@@ -269,10 +285,10 @@ static bool may_conflict(const cycles *c, const segment *s, int64_t count)
  * it does asks for the bus. */
 static bool glide(cycles *c, const cycle_op *op)
 {
-    if (!c->glides || c->door.count || c->miss != MISS_NONE || op->run.killed)
+    if (!c->glides || c->door.count || c->miss != MISS_NONE || op->killed)
         return false;
-    bool miss = op->run.miss && c->op_done == 0;
-    int64_t count = miss ? 1 : op->run.count - c->op_done, ready = c->raster, length;
+    bool miss = op->miss && c->op_done == 0;
+    int64_t count = miss ? 1 : op->count - c->op_done, ready = c->raster, length;
     if (miss && !c->eager && c->visit_fragments - c->visit_accepted <= c->m->fragment_fifo + 1)
         return false;
     if (c->loading) {
@@ -281,9 +297,9 @@ static bool glide(cycles *c, const cycle_op *op)
             return false;
         ready = max64(ready, loaded + 1);
     }
-    const segment s = {
-        .run = op->run, .offset = c->op_done, .slice_start = c->slice_starts || (op->slice_start && c->op_done == 0)};
-    if (may_conflict(c, &s, count))
+    int32_t x = op->x + c->op_done;
+    bool slice_start = c->slice_starts || (op->slice_start && c->op_done == 0);
+    if (may_conflict(c, x, op->y, slice_start, count))
         return false;
     int64_t head = max64(ready + c->latency, c->last_pop + 1), cycle = max64(head, c->cache_free);
     int64_t accept = ready + count - 1, room = c->accepted + count - 1 - c->m->fragment_fifo;
@@ -305,9 +321,10 @@ static bool glide(cycles *c, const cycle_op *op)
     c->tag_count += count;
     c->op_done += (int32_t)count;
     if (!miss) {
-        read_pixels(c, &s, (int32_t)count, cycle);
+        read_pixels(c, x, op->y, slice_start, count, cycle);
         return true;
     }
+    const segment s = {.run = run_of(c, op), .slice_start = slice_start};
     begin_miss(c, cycle);
     while (!resolve_miss(c, &s) && grant(c))
         ;
@@ -323,13 +340,13 @@ static bool advance_raster(cycles *c)
         if (op->kind == OP_SLICE) {
             take_slice(c);
         } else if (op->kind == OP_ROWS) {
-            c->raster += op->rows;
-            c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)op->rows;
+            c->raster += op->count;
+            c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)op->count;
         } else if (!glide(c, op) && !offer(c, op)) {
             return moved;
         }
         moved = true;
-        if (op->kind == OP_RUN && c->op_done < op->run.count)
+        if (op->kind == OP_RUN && c->op_done < op->count)
             continue;
         c->op_done = 0;
         c->op_next++;
@@ -349,10 +366,12 @@ static int64_t hazard(const cycles *c, int32_t x, int32_t y)
     int64_t cycle = INT64_MIN, window = c->m->blend_cycles;
     if (c->slice_reads >= window)
         return cycle;
-    for (int64_t n = c->read_count - 1; n >= 0 && n >= c->read_count - window; n--) {
+    int64_t seen = 0;
+    for (int64_t n = c->recent_count - 1; n >= 0 && seen < window; n--) {
         const recent *r = &c->recents[n & c->recent_mask];
-        if (r->x == x && r->y == y)
-            cycle = max64(cycle, r->cycle + window);
+        if (r->y == y && x >= r->x && x < r->x + r->count)
+            cycle = max64(cycle, r->cycle + (x - r->x) + window);
+        seen += r->count;
     }
     return cycle;
 }
@@ -365,34 +384,42 @@ static int32_t stride(const cycles *c, const segment *s)
     return single ? 1 : s->count;
 }
 
-/* `count` pixels read from `cycle` on; the blender writes them blend_cycles later. */
-static void read_pixels(cycles *c, const segment *s, int32_t count, int64_t cycle)
+/* `count` pixels from (x, y) on read from `cycle` on; the blender writes them blend_cycles later. */
+static void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count, int64_t cycle)
 {
-    int64_t window = c->m->blend_cycles;
-    if (s->slice_start)
+    if (slice_start)
         c->slice_reads = 0;
     if (c->nonblocking)
         stretch_add(c, &c->reads, c->read_count, count, cycle);
-    for (int64_t n = count > window ? count - window : 0; n < count; n++)
-        c->recents[(c->read_count + n) & c->recent_mask] =
-            (recent){s->run.x + s->offset + (int32_t)n, s->run.y, cycle + n};
+    c->recents[c->recent_count++ & c->recent_mask] = (recent){x, y, count, cycle};
     c->read_count += count;
     c->slice_reads += count;
     c->last_read = cycle + count - 1;
     c->n.blocks[VODR_BLOCK_PIXEL_CACHE].busy += (uint64_t)count;
-    happened(c, c->last_read + window - 1);
-    if (!c->through)
-        return;
+    happened(c, c->last_read + c->m->blend_cycles - 1);
+}
+
+/* Writing through: the entry of the write FIFO that the segment's first fragment took. */
+static void take_entry(cycles *c, const segment *s, int64_t cycle)
+{
     bool writes = s->run.written >> s->offset & 1;
-    keep(c, cycle_ring_push(&c->releases, writes ? UNKNOWN : cycle + window));
-    if (writes) {
-        keep(c, request_ring_push(&c->write_requests, (bus_request){.raised = cycle + window,
+    int64_t written = cycle + c->m->blend_cycles;
+    keep(c, cycle_ring_push(&c->releases, writes ? UNKNOWN : written));
+    if (writes)
+        keep(c, request_ring_push(&c->write_requests, (bus_request){.raised = written,
                                                                     .address = s->run.line * line_bytes(c->m),
                                                                     .bytes = pixel_bytes(c->m),
                                                                     .line = -1,
                                                                     .entry = c->entries}));
-    }
     c->entries++;
+}
+
+/* The first `count` fragments of a segment are read. */
+static void read_segment_pixels(cycles *c, const segment *s, int32_t count, int64_t cycle)
+{
+    read_pixels(c, s->run.x + s->offset, s->run.y, s->slice_start, count, cycle);
+    if (c->through)
+        take_entry(c, s, cycle);
 }
 
 static void consume(segment_ring *r, int32_t count)
@@ -458,7 +485,7 @@ static bool resolve_miss(cycles *c, const segment *s)
     if (c->fill_done == UNKNOWN)
         return false;
     c->n.stalls[VODR_STALL_FILL] += (uint64_t)(c->fill_done + 1 - c->miss_cycle);
-    read_pixels(c, s, 1, c->fill_done + 1);
+    read_segment_pixels(c, s, 1, c->fill_done + 1);
     c->cache_free = c->last_read + 1;
     c->miss = MISS_NONE;
     return true;
@@ -572,7 +599,7 @@ static bool pop_segment(cycles *c)
     } else if (s->run.miss && !s->offset) {
         begin_miss(c, cycle);
     } else {
-        read_pixels(c, s, count, cycle);
+        read_segment_pixels(c, s, count, cycle);
         consume(&c->door, count);
     }
     return true;
@@ -607,7 +634,7 @@ static bool read_segment(cycles *c)
         if (!miss) {
             int32_t count = stride(c, s);
             c->n.stalls[VODR_STALL_HAZARD] += (uint64_t)(clear - base);
-            read_pixels(c, s, count, clear);
+            read_segment_pixels(c, s, count, clear);
             consume(&c->tagged, count);
             return true;
         }
@@ -632,7 +659,7 @@ static bool read_segment(cycles *c)
         cycle_ring_pop(&c->fills);
     }
     c->n.stalls[VODR_STALL_FILL] += (uint64_t)(cycle - c->miss_cycle);
-    read_pixels(c, s, 1, cycle);
+    read_segment_pixels(c, s, 1, cycle);
     keep(c, cycle_ring_push(&c->miss_reads, cycle));
     c->miss = MISS_NONE;
     consume(&c->tagged, 1);
@@ -690,12 +717,14 @@ static void grant_write(cycles *c, int64_t cycle)
     if (r->line >= 0) {
         c->write_pending = false;
         c->write_granted = cycle;
+    }
+    if (r->line >= 0 && c->nonblocking) {
         while (c->departures.count && departure_ring_front(&c->departures)->granted < c->last_pop)
             departure_ring_pop(&c->departures);
         keep(c, departure_ring_push(&c->departures, (departure){r->line, cycle}));
-    } else {
-        *cycle_ring_at(&c->releases, (size_t)(r->entry - c->release_first)) = cycle;
     }
+    if (r->line < 0)
+        *cycle_ring_at(&c->releases, (size_t)(r->entry - c->release_first)) = cycle;
     request_ring_pop(&c->write_requests);
 }
 
@@ -778,7 +807,7 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     c->slice_made = c->brick_taken = c->last_pop = c->load_grant = c->write_granted = c->last = -1;
     c->slice_taken = c->last_accept = -1;
     c->last_read = -m->blend_cycles;
-    while (c->recent_mask + 1 < m->blend_cycles)
+    while (c->recent_mask < m->blend_cycles)
         c->recent_mask = 2 * c->recent_mask + 1;
     c->recents = calloc((size_t)c->recent_mask + 1, sizeof *c->recents);
     if (c->recents)
@@ -787,23 +816,47 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     return NULL;
 }
 
+/* Room for one more of so many items of `size` bytes; false, and nothing changed, when there is none. */
+static bool make_room(cycles *c, void *items, size_t count, size_t *room, size_t size)
+{
+    void **at = items;
+    if (count < *room)
+        return true;
+    size_t wanted = *room ? 2 * *room : 1024;
+    void *grown = realloc(*at, wanted * size);
+    c->failed |= !grown;
+    if (!grown)
+        return false;
+    *at = grown;
+    *room = wanted;
+    return true;
+}
+
+/* Drops the ops that are done. Details are numbered from the first op kept. */
+static void drop_ops(cycles *c)
+{
+    int32_t first = -1;
+    c->op_count -= c->op_next;
+    memmove(c->ops, c->ops + c->op_next, c->op_count * sizeof *c->ops);
+    c->op_next = 0;
+    for (size_t i = 0; i < c->op_count; i++)
+        if (c->ops[i].detail >= 0) {
+            first = first < 0 ? c->ops[i].detail : first;
+            c->ops[i].detail -= first;
+        }
+    size_t dropped = first < 0 ? c->detail_count : (size_t)first;
+    c->detail_count -= dropped;
+    memmove(c->details, c->details + dropped, c->detail_count * sizeof *c->details);
+}
+
 static void add_op(cycles *c, cycle_op op)
 {
-    if (c->op_count == c->op_room) {
-        size_t room = c->op_room ? 2 * c->op_room : 1024;
-        cycle_op *grown = realloc(c->ops, room * sizeof *grown);
-        c->failed |= !grown;
-        if (!grown)
-            return;
-        c->ops = grown;
-        c->op_room = room;
-    }
+    if (!make_room(c, &c->ops, c->op_count, &c->op_room, sizeof *c->ops))
+        return;
     c->ops[c->op_count++] = op;
     if (c->eager && c->op_count >= EAGER_OPS) {
         pump(c);
-        memmove(c->ops, c->ops + c->op_next, (c->op_count - c->op_next) * sizeof *c->ops);
-        c->op_count -= c->op_next;
-        c->op_next = 0;
+        drop_ops(c);
     }
 }
 
@@ -811,7 +864,7 @@ static void add_op(cycles *c, cycle_op op)
 static void work_visit(cycles *c)
 {
     pump(c);
-    c->op_count = c->op_next = 0;
+    drop_ops(c);
     c->visit_fragments = c->visit_accepted = 0;
 }
 
@@ -829,14 +882,14 @@ void cycles_visit(cycles *c, const cycle_visit *v)
 
 void cycles_slice(cycles *c)
 {
-    add_op(c, (cycle_op){.kind = OP_SLICE});
+    add_op(c, (cycle_op){.kind = OP_SLICE, .detail = -1});
     c->new_slice = true;
 }
 
 void cycles_rows(cycles *c, int32_t count)
 {
     if (count)
-        add_op(c, (cycle_op){.kind = OP_ROWS, .rows = count});
+        add_op(c, (cycle_op){.kind = OP_ROWS, .count = count, .detail = -1});
 }
 
 /* Whether a run goes on where the one before it ended, so that both move as one: which pixels of a run are written
@@ -846,18 +899,32 @@ static bool continues(const cycles *c, const cycle_run *run)
     if (c->through || run->miss || c->op_next == c->op_count)
         return false;
     const cycle_op *before = &c->ops[c->op_count - 1];
-    const cycle_run *r = &before->run;
-    return before->kind == OP_RUN && r->killed == run->killed && r->y == run->y && r->x + r->count == run->x;
+    return before->kind == OP_RUN && before->killed == run->killed && before->y == run->y &&
+           before->x + before->count == run->x;
 }
 
 void cycles_run_add(cycles *c, const cycle_run *run)
 {
     c->visit_fragments += run->count;
     if (continues(c, run)) {
-        c->ops[c->op_count - 1].run.count += run->count;
+        c->ops[c->op_count - 1].count += run->count;
         return;
     }
-    add_op(c, (cycle_op){.kind = OP_RUN, .slice_start = c->new_slice, .run = *run});
+    cycle_op op = {.kind = OP_RUN,
+                   .count = run->count,
+                   .x = run->x,
+                   .y = run->y,
+                   .slice_start = c->new_slice,
+                   .killed = run->killed,
+                   .miss = run->miss,
+                   .detail = -1};
+    if (run->miss || c->through) {
+        if (!make_room(c, &c->details, c->detail_count, &c->detail_room, sizeof *c->details))
+            return;
+        op.detail = (int32_t)c->detail_count;
+        c->details[c->detail_count++] = *run;
+    }
+    add_op(c, op);
     c->new_slice = false;
 }
 
@@ -918,6 +985,7 @@ void cycles_free(cycles *c)
         return;
     free(c->ops);
     free(c->recents);
+    free(c->details);
     segment_ring_free(&c->door);
     segment_ring_free(&c->tagged);
     stretch_ring_free(&c->pops);
