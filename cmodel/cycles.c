@@ -31,6 +31,7 @@ typedef struct cycle_op {
 /* `count` fragments of a run from its fragment `offset` on, fragment n of them at `cycle` + n. */
 typedef struct segment {
     cycle_run run;
+    bool killed;
     bool slice_start;
     int32_t offset, count;
     int64_t cycle;
@@ -76,7 +77,7 @@ typedef enum miss_state { MISS_NONE, MISS_EVICT, MISS_FILL } miss_state;
 
 struct cycles {
     const vodr_machine *m;
-    int64_t latency, texture_base;
+    int64_t latency, texture_base, line_bytes, pixel_bytes;
     bool eager, nonblocking, through, failed, ended;
     vodr_cycles n;
     int64_t last; /* cycle in which something happened */
@@ -201,7 +202,7 @@ static void take_slice(cycles *c)
 
 static cycle_run run_of(const cycles *c, const cycle_op *op)
 {
-    cycle_run run = {.killed = op->killed};
+    cycle_run run = {.count = 0};
     if (op->detail >= 0)
         run = c->details[op->detail];
     run.x = op->x;
@@ -230,8 +231,12 @@ static bool offer(cycles *c, const cycle_op *op)
     c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(cycle - c->raster);
     c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(open - cycle);
     c->loading = false;
-    keep(c, segment_ring_push(
-                &c->door, (segment){run_of(c, op), op->slice_start && !c->op_done, c->op_done, (int32_t)length, open}));
+    keep(c, segment_ring_push(&c->door, (segment){.run = run_of(c, op),
+                                                  .killed = op->killed,
+                                                  .slice_start = op->slice_start && !c->op_done,
+                                                  .offset = c->op_done,
+                                                  .count = (int32_t)length,
+                                                  .cycle = open}));
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
@@ -407,8 +412,8 @@ static void take_entry(cycles *c, const segment *s, int64_t cycle)
     keep(c, cycle_ring_push(&c->releases, writes ? UNKNOWN : written));
     if (writes)
         keep(c, request_ring_push(&c->write_requests, (bus_request){.raised = written,
-                                                                    .address = s->run.line * line_bytes(c->m),
-                                                                    .bytes = pixel_bytes(c->m),
+                                                                    .address = s->run.line * c->line_bytes,
+                                                                    .bytes = c->pixel_bytes,
                                                                     .line = -1,
                                                                     .entry = c->entries}));
     c->entries++;
@@ -446,8 +451,8 @@ static bool evict(cycles *c, const cycle_run *run, int64_t earliest, int64_t *cy
     *cycle = max64(earliest, max64(c->last_read + c->m->blend_cycles, c->write_granted + 1));
     c->write_pending = true;
     keep(c, request_ring_push(&c->write_requests, (bus_request){.raised = *cycle,
-                                                                .address = run->victim * line_bytes(c->m),
-                                                                .bytes = line_bytes(c->m),
+                                                                .address = run->victim * c->line_bytes,
+                                                                .bytes = c->line_bytes,
                                                                 .line = run->victim}));
     return true;
 }
@@ -455,8 +460,8 @@ static bool evict(cycles *c, const cycle_run *run, int64_t earliest, int64_t *cy
 static void request_fill(cycles *c, const cycle_run *run, int64_t cycle)
 {
     keep(c, request_ring_push(&c->fill_requests, (bus_request){.raised = cycle,
-                                                               .address = run->line * line_bytes(c->m),
-                                                               .bytes = line_bytes(c->m),
+                                                               .address = run->line * c->line_bytes,
+                                                               .bytes = c->line_bytes,
                                                                .line = run->line}));
 }
 
@@ -562,7 +567,7 @@ static bool pop_segment(cycles *c)
     segment *s = segment_ring_front(&c->door);
     int64_t head = max64(s->cycle + c->latency, c->last_pop + 1), cycle = max64(head, c->cache_free);
     int64_t length = s->count;
-    if (s->run.killed) {
+    if (s->killed) {
         c->n.stalls[VODR_STALL_CACHE] += (uint64_t)(cycle - head);
         pop(c, s->count, cycle);
         c->slice_starts |= s->slice_start; /* a slice that begins with killed fragments begins all the same */
@@ -800,6 +805,8 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     c->nonblocking = m->nonblocking;
     c->through = m->write_policy == VODR_WRITE_POLICY_THROUGH;
     c->latency = m->texture_latency_cycles + (c->eager ? m->mem_latency_cycles : 0);
+    c->line_bytes = line_bytes(m);
+    c->pixel_bytes = pixel_bytes(m);
     c->glides = !c->nonblocking && !c->through && c->latency < m->fragment_fifo;
     c->texture_base = layout.lines * line_bytes(m);
     c->memory = memory_of(m);
@@ -892,40 +899,42 @@ void cycles_rows(cycles *c, int32_t count)
         add_op(c, (cycle_op){.kind = OP_ROWS, .count = count, .detail = -1});
 }
 
-/* Whether a run goes on where the one before it ended, so that both move as one: which pixels of a run are written
- * matters when writing through, which line it is to its first access alone, and that is a hit. */
-static bool continues(const cycles *c, const cycle_run *run)
+/* Adds fragments to the run before where they go on from it, so that both move as one; else false. Which line they are
+ * in matters to a first access alone, and which of them are written when writing through. */
+static bool prolong(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
 {
-    if (c->through || run->miss || c->op_next == c->op_count)
+    if (c->through || c->op_next == c->op_count)
         return false;
-    const cycle_op *before = &c->ops[c->op_count - 1];
-    return before->kind == OP_RUN && before->killed == run->killed && before->y == run->y &&
-           before->x + before->count == run->x;
+    cycle_op *before = &c->ops[c->op_count - 1];
+    bool goes_on =
+        before->kind == OP_RUN && before->killed == killed && before->y == y && before->x + before->count == x;
+    before->count += goes_on ? count : 0;
+    return goes_on;
 }
 
-void cycles_run_add(cycles *c, const cycle_run *run)
+static void add_run(cycles *c, int32_t x, int32_t y, int32_t count, bool killed, int32_t detail)
+{
+    cycle_op op = {.kind = OP_RUN, .count = count, .x = x, .y = y, .killed = killed, .detail = detail};
+    op.slice_start = c->new_slice;
+    op.miss = detail >= 0 && c->details[detail].miss;
+    c->new_slice = false;
+    add_op(c, op);
+}
+
+void cycles_hits(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
+{
+    c->visit_fragments += count;
+    if (!prolong(c, x, y, count, killed))
+        add_run(c, x, y, count, killed, -1);
+}
+
+void cycles_access(cycles *c, const cycle_run *run)
 {
     c->visit_fragments += run->count;
-    if (continues(c, run)) {
-        c->ops[c->op_count - 1].count += run->count;
+    if (!make_room(c, &c->details, c->detail_count, &c->detail_room, sizeof *c->details))
         return;
-    }
-    cycle_op op = {.kind = OP_RUN,
-                   .count = run->count,
-                   .x = run->x,
-                   .y = run->y,
-                   .slice_start = c->new_slice,
-                   .killed = run->killed,
-                   .miss = run->miss,
-                   .detail = -1};
-    if (run->miss || c->through) {
-        if (!make_room(c, &c->details, c->detail_count, &c->detail_room, sizeof *c->details))
-            return;
-        op.detail = (int32_t)c->detail_count;
-        c->details[c->detail_count++] = *run;
-    }
-    add_op(c, op);
-    c->new_slice = false;
+    c->details[c->detail_count] = *run;
+    add_run(c, run->x, run->y, run->count, false, (int32_t)c->detail_count++);
 }
 
 void cycles_flush_line(cycles *c, int64_t line)

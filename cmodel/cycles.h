@@ -32,7 +32,11 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view);
 void cycles_visit(cycles *c, const cycle_visit *v); /* the first slice of the visit follows */
 void cycles_slice(cycles *c);
 void cycles_rows(cycles *c, int32_t count); /* rows without fragments */
-void cycles_run_add(cycles *c, const cycle_run *run);
+/* Fragments that hit, or that kill_transparent dropped: none of them is written through. */
+void cycles_hits(cycles *c, int32_t x, int32_t y, int32_t count, bool killed);
+
+/* Any other run: its first access missed, or the cache writes through. */
+void cycles_access(cycles *c, const cycle_run *run);
 void cycles_flush_line(cycles *c, int64_t line); /* a dirty line at the frame's end, after the last run */
 
 /* The end of the frame: work_cycles of the divider after the last visit. False when memory ran out on the way. */

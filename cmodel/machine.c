@@ -237,5 +237,10 @@ vodr_status vodr_machine_check(const vodr_machine *m, vodr_error *error)
                          " bytes (line_px=%" PRId32 "x%" PRId32 ", fb_bits=%" PRId32 ") are %" PRId64 " bytes",
                          m->cache_bytes, m->ways, line_bytes(m), m->line_px.width, m->line_px.height, m->fb_bits,
                          set_bytes);
+    if (m->dram_refresh_cycles && m->dram_trfc_cycles >= m->dram_refresh_cycles)
+        return vodr_fail(error, VODR_INVALID,
+                         "dram_trfc_cycles=%" PRId32 " must be below dram_refresh_cycles=%" PRId32
+                         ": a refresh would last until the next",
+                         m->dram_trfc_cycles, m->dram_refresh_cycles);
     return VODR_OK;
 }

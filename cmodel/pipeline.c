@@ -47,17 +47,20 @@ static uint32_t written_by_marks(pipeline *p, int32_t k, int32_t y, int32_t x, i
 /* Tells the clock of a run that was just blended; bit i of `written`: whether its fragment i wrote. */
 static void clock_run(pipeline *p, const span *s, int32_t from, int32_t to, int64_t line, uint32_t written)
 {
-    int32_t x = s->x0 + from, count = to - from;
     const pixel_cache *c = &p->cache;
-    cycles_run_add(p->clock, &(cycle_run){.x = x,
-                                          .y = s->y,
-                                          .count = count,
-                                          .written = written,
-                                          .miss = c->missed,
-                                          .reads = c->missed && c->read,
-                                          .evicts = c->missed && c->evicted_dirty,
-                                          .line = line,
-                                          .victim = c->victim});
+    int32_t x = s->x0 + from, count = to - from;
+    if (!c->missed && !c->through)
+        cycles_hits(p->clock, x, s->y, count, false);
+    else
+        cycles_access(p->clock, &(cycle_run){.x = x,
+                                             .y = s->y,
+                                             .count = count,
+                                             .written = written,
+                                             .miss = c->missed,
+                                             .reads = c->missed && c->read,
+                                             .evicts = c->missed && c->evicted_dirty,
+                                             .line = line,
+                                             .victim = c->victim});
 }
 
 /* Blends a run; the bits of the pixels written. Which ones they are matters to a write-through cache's clock alone:
@@ -136,7 +139,7 @@ static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, in
         if (lives)
             blend_run(p, k, s, begin, end);
         else if (p->clock)
-            cycles_run_add(p->clock, &(cycle_run){.x = s->x0 + begin, .y = s->y, .count = end - begin, .killed = true});
+            cycles_hits(p->clock, s->x0 + begin, s->y, end - begin, true);
     }
 }
 
