@@ -6,6 +6,9 @@
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+
+enum { MAX_DEFLATE_RATIO = 1100 };
 
 /* Channel c of pixel x of a row of a frame. */
 static uint32_t channel_at(const void *row, int bits, size_t x, int c)
@@ -147,6 +150,16 @@ static bool expand_to_rgba(png_structp png, png_infop info)
     return has_alpha;
 }
 
+/* Whether the file can hold the picture that its header names, before memory is taken: deflate cannot shrink data more
+ * than 1032 times. Of a pipe nobody knows. */
+static bool can_hold(png_structp png, png_infop info, FILE *file)
+{
+    struct stat status;
+    uint64_t need = (uint64_t)png_get_rowbytes(png, info) * png_get_image_height(png, info);
+    return fstat(fileno(file), &status) == 0 &&
+           (!S_ISREG(status.st_mode) || need / MAX_DEFLATE_RATIO <= (uint64_t)status.st_size);
+}
+
 /* What reading holds, so that nothing is lost in a jump. */
 typedef struct reader {
     png_structp png;
@@ -161,10 +174,14 @@ static bool read_rows(reader *r, FILE *file, image *picture)
     if (setjmp(png_jmpbuf(r->png)))
         return false;
     png_init_io(r->png, file);
+    /* Pixels, palette and transparency count; other chunks would be read whole, however long they say they are. */
+    png_set_keep_unknown_chunks(r->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(r->png, r->info);
     png_uint_32 width = png_get_image_width(r->png, r->info), height = png_get_image_height(r->png, r->info);
     if (width > INT16_MAX || height > INT16_MAX)
         png_error(r->png, "it is more than 32767 pixels wide or high");
+    if (!can_hold(r->png, r->info, file))
+        png_error(r->png, "its file is too short for the size that its header names");
     picture->has_alpha = expand_to_rgba(r->png, r->info);
     size_t row_bytes = png_get_rowbytes(r->png, r->info);
     r->bytes = malloc(row_bytes * height);

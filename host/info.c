@@ -2,71 +2,22 @@
 #include "commands.h"
 #include "json.h"
 #include "orientation.h"
-#include "transfer.h"
+#include "suggest.h"
 #include "view_options.h"
 #include "volume.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
-enum { BINS = 16, BAR_CHARS = 50 };
+enum { PARTS = 16, BAR_CHARS = 50 };
 
-/* How many voxels lie in each of BINS equal parts of the range; `soft`: between -200 and 200, in CT soft tissue. */
-typedef struct histogram {
-    uint64_t count[BINS];
-    uint64_t soft;
-    uint64_t all;
-} histogram;
-
-static histogram histogram_of(const volume *v)
+/* The share of the voxels, 0 to 1, in a part of the range. */
+static double share(const histogram *h, int part)
 {
-    histogram h = {.all = volume_count(v)};
-    double scale = v->max > v->min ? BINS / (v->max - v->min) : 0;
-    for (size_t i = 0; i < h.all; i++) {
-        double value = volume_value(v, i);
-        int bin = (int)((value - v->min) * scale);
-        h.count[bin < BINS ? bin : BINS - 1]++;
-        h.soft += value >= -200 && value <= 200;
-    }
-    return h;
+    return histogram_share(h, part, part + 1);
 }
 
-/* The share of the voxels, 0 to 1, in the bins from first to last. */
-static double share(const histogram *h, int first, int last)
-{
-    uint64_t sum = 0;
-    for (int i = first; i <= last; i++)
-        sum += h->count[i];
-    return (double)sum / (double)h->all;
-}
-
-/* A CT with soft tissue has a skin. Contrast-filled vessels are the one per cent that is not dark. In MRI, tissue
- * spreads over the lower half of the range and little lies above. */
-static const char *suggest_transfer(const volume *v, const histogram *h)
-{
-    if (volume_is_ct(v))
-        return h->soft >= h->all / 20 ? "skin-bone" : "bone";
-    if (v->max > v->min && share(h, 0, 0) >= 0.985)
-        return "vessels";
-    if (share(h, 0, 0) < 0.7 && share(h, 1, 8) >= 0.4 && share(h, 9, BINS - 1) < 0.1)
-        return "mri";
-    return "ramp";
-}
-
-static host_status suggest_window(const volume *v, const char *name, double *lo, double *hi, host_error *error)
-{
-    transfer t;
-    host_status status = transfer_open(name, volume_is_ct(v), &t, error);
-    if (status != HOST_OK)
-        return status;
-    bool own = volume_is_ct(v) && t.has_ct_window;
-    *lo = own ? t.ct_lo : v->min;
-    *hi = own ? t.ct_hi : v->max;
-    transfer_close(&t);
-    return HOST_OK;
-}
-
-static void print_text(const volume *v, const histogram *h, const char *tf, double lo, double hi)
+static void print_text(const volume *v, const histogram *h, const suggestion *s)
 {
     char words[64];
     orientation_words(v, words, sizeof words);
@@ -76,34 +27,34 @@ static void print_text(const volume *v, const histogram *h, const char *tf, doub
     printf("spacing      %.9g %.9g %.9g\n", v->spacing[0], v->spacing[1], v->spacing[2]);
     printf("orientation  %s\n", words);
     printf("range        %.17g to %.17g%s\n", v->min, v->max, volume_is_ct(v) ? " (CT, Hounsfield units)" : "");
-    printf("nonfinite    %" PRIu64 "\n", v->nonfinite);
-    printf("suggested    --tf %s --window %.9g:%.9g\n\n", tf, lo, hi);
-    double width = (v->max - v->min) / BINS, largest = 0;
-    for (int i = 0; i < BINS; i++)
-        largest = share(h, i, i) > largest ? share(h, i, i) : largest;
-    for (int i = 0; i < BINS; i++) {
+    printf("nonfinite    %" PRIu64 "%s\n", v->nonfinite,
+           v->nonfinite ? " (NaN or infinite: drawn as the minimum)" : "");
+    printf("suggested    --tf %s --window %.9g:%.9g\n\n", s->transfer, s->lo, s->hi);
+    double width = (v->max - v->min) / PARTS, largest = 0;
+    for (int i = 0; i < PARTS; i++)
+        largest = share(h, i) > largest ? share(h, i) : largest;
+    for (int i = 0; i < PARTS; i++) {
         static const char bar[BAR_CHARS + 1] = "##################################################";
-        int length = (int)(share(h, i, i) / largest * BAR_CHARS + 0.5);
-        printf("%12.6g %6.2f %%%s%.*s\n", v->min + i * width, 100 * share(h, i, i), length ? " " : "", length, bar);
+        int length = (int)(share(h, i) / largest * BAR_CHARS + 0.5);
+        printf("%12.6g %6.2f %%%s%.*s\n", v->min + i * width, 100 * share(h, i), length ? " " : "", length, bar);
     }
 }
 
-static host_status print_json(const volume *v, const histogram *h, const char *tf, double lo, double hi,
-                              host_error *error)
+static host_status print_json(const volume *v, const histogram *h, const suggestion *s, host_error *error)
 {
     char words[64];
     orientation_words(v, words, sizeof words);
     json_t *counts = json_array();
-    for (int i = 0; i < BINS; i++)
-        json_array_append_new(counts, json_integer((json_int_t)h->count[i]));
-    json_t *root =
-        json_pack("{s:s, s:o, s:s, s:[i,i,i], s:s, s:[f,f,f], s:{s:[i,i,i], s:[i,i,i], s:s}, s:f, s:f, s:I, "
-                  "s:b, s:s, s:[f,f], s:o}",
-                  "schema", "vodr-info-1", "file", json_text(v->path), "format", v->format, "dims", v->dims_vox[0],
-                  v->dims_vox[1], v->dims_vox[2], "type", volume_type_name(v->type), "spacing", v->spacing[0],
-                  v->spacing[1], v->spacing[2], "orientation", "axis", v->axis[0], v->axis[1], v->axis[2], "sign",
-                  v->sign[0], v->sign[1], v->sign[2], "words", words, "min", v->min, "max", v->max, "nonfinite",
-                  (json_int_t)v->nonfinite, "ct", volume_is_ct(v), "tf", tf, "window", lo, hi, "histogram", counts);
+    for (int i = 0; i < PARTS; i++)
+        json_array_append_new(counts, json_integer((json_int_t)histogram_count(h, i, i + 1)));
+    json_t *root = json_pack("{s:s, s:o, s:s, s:[i,i,i], s:s, s:[f,f,f], s:{s:[i,i,i], s:[i,i,i], s:s}, s:f, s:f, s:I, "
+                             "s:b, s:s, s:[f,f], s:o}",
+                             "schema", "vodr-info-1", "file", json_text(v->path), "format", v->format, "dims",
+                             v->dims_vox[0], v->dims_vox[1], v->dims_vox[2], "type", volume_type_name(v->type),
+                             "spacing", v->spacing[0], v->spacing[1], v->spacing[2], "orientation", "axis", v->axis[0],
+                             v->axis[1], v->axis[2], "sign", v->sign[0], v->sign[1], v->sign[2], "words", words, "min",
+                             v->min, "max", v->max, "nonfinite", (json_int_t)v->nonfinite, "ct", volume_is_ct(v), "tf",
+                             s->transfer, "window", s->lo, s->hi, "histogram", counts);
     if (!root)
         return host_fail(error, HOST_ENVIRONMENT, "%s: no memory for the JSON text", v->path);
     json_dumpf(root, stdout, JSON_INDENT(2));
@@ -114,17 +65,16 @@ static host_status print_json(const volume *v, const histogram *h, const char *t
 
 static host_status print_volume(const volume *v, bool json, host_error *error)
 {
-    double lo, hi;
-    histogram h = histogram_of(v);
-    const char *tf = suggest_transfer(v, &h);
-    host_status status = suggest_window(v, tf, &lo, &hi, error);
+    suggestion s;
+    histogram h;
+    histogram_of(v, &h);
+    host_status status = suggest(v, &h, &s, error);
     if (status != HOST_OK)
         return status;
     if (json)
-        status = print_json(v, &h, tf, lo, hi, error);
-    else
-        print_text(v, &h, tf, lo, hi);
-    return status;
+        return print_json(v, &h, &s, error);
+    print_text(v, &h, &s);
+    return HOST_OK;
 }
 
 static host_status set_json(void *target, const option *o, const char *value, host_error *error)

@@ -24,6 +24,20 @@ static double cosine(const double direction[3], int world_axis)
     return isfinite(result) ? result : 0;
 }
 
+bool orientation_is_sound(const double direction[3][3])
+{
+    /* Skewed axes are seen as they are not, but three there must be. */
+    const double least = 1e-3;
+    double c[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int w = 0; w < 3; w++)
+            c[i][w] = cosine(direction[i], w);
+    double spanned = c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) +
+                     c[0][1] * (c[1][2] * c[2][0] - c[1][0] * c[2][2]) +
+                     c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0]);
+    return fabs(spanned) > least;
+}
+
 void orientation_nearest(const double direction[3][3], int axis[3], int sign[3])
 {
     static const int permutations[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};

@@ -8,6 +8,9 @@
  * viewer, so world right is the patient's left, up is superior, towards the eye is anterior. */
 void orientation_of_patient(const double ras[3], double world[3]);
 
+/* Whether the directions [file axis][world axis], of any length, span space, as a rotation's do. */
+bool orientation_is_sound(const double direction[3][3]);
+
 /* Fills axis and sign with the permutation of axes nearest to the directions [file axis][world axis], of any length:
  * the one with the largest sum of absolute cosines. Ties go to the one that moves fewer of the first axes. */
 void orientation_nearest(const double direction[3][3], int axis[3], int sign[3]);

@@ -75,6 +75,13 @@ bool text_size(const char *text, int64_t hi, int32_t *a, int32_t *b)
     return true;
 }
 
+void text_make_printable(char *text)
+{
+    for (; *text; text++)
+        if (*text < ' ' || *text > '~')
+            *text = '?';
+}
+
 static host_status read_stream(FILE *file, const char *path, const char *what, char **text, host_error *error)
 {
     char *buffer = malloc(FILE_BYTES + 1);

@@ -15,6 +15,9 @@ int text_numbers(const char *text, char separator, int least, int most, double *
 /* Two integers from 1 to hi as "AxB". */
 bool text_size(const char *text, int64_t hi, int32_t *a, int32_t *b);
 
+/* Replaces what is not printable ASCII, for text from files in sentences. */
+void text_make_printable(char *text);
+
 /* Reads a text file of at most 1 MiB, without NUL bytes; free() the text. `what` names it in error sentences. */
 host_status text_read(const char *path, const char *what, char **text, host_error *error);
 

@@ -1,17 +1,17 @@
-/* transfer.c - transfer functions: built in or read from a text file, and the machine's table made from one. */
+/* transfer.c - transfer functions: built in or read from a file, and the machine's table made from one. */
 #include "transfer.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "text.h"
 #include "transfer_builtin.h"
+#include "transfer_file.h"
 
 static double mix(double a, double b, double t)
 {
-    return a + (b - a) * t;
+    return t < 1 ? a + (b - a) * t : b;
 }
 
 static double normalize(double value, double lo, double hi)
@@ -19,19 +19,70 @@ static double normalize(double value, double lo, double hi)
     return hi > lo ? (value - lo) / (hi - lo) : 0;
 }
 
+/* How many of `count` ascending values, `stride` bytes apart, are below x. A value at a point belongs to the way that
+ * ends there, as in VTK. */
+static size_t count_below(const double *values, size_t stride, size_t count, double x)
+{
+    size_t lo = 0, hi = count;
+    while (lo < hi) {
+        size_t middle = lo + (hi - lo) / 2;
+        if (*(const double *)((const char *)values + middle * stride) < x)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    return lo;
+}
+
+/* Where between two values a third lies, 0 to 1, whatever their size. */
+static double share_of(double value, double from, double to)
+{
+    return isfinite(to - from) ? (value - from) / (to - from) : (value / 2 - from / 2) / (to / 2 - from / 2);
+}
+
+static transfer_point point_at(const transfer *t, double x)
+{
+    size_t above = count_below(&t->points[0].value, sizeof *t->points, t->count, x);
+    if (above == 0 || above == t->count)
+        return t->points[above ? above - 1 : 0];
+    const transfer_point *p = &t->points[above - 1], *q = &t->points[above];
+    double share = share_of(x, p->value, q->value), rgb[3];
+    colour_between(t->space, (const double[]){p->r, p->g, p->b}, (const double[]){q->r, q->g, q->b}, share, rgb);
+    return (transfer_point){x, rgb[0], rgb[1], rgb[2], mix(p->a, q->a, share)};
+}
+
+/* The way from p to q in VTK's manner: moved to the midpoint, steepened by the sharpness, then a cubic with the slope
+ * that the sharpness leaves. Near 0 and 1 the sharpness means linear and a step. */
+static double bend(const transfer_opacity *p, const transfer_opacity *q, double share)
+{
+    double midpoint = fmin(fmax(p->midpoint, 0.00001), 0.99999);
+    double s = share < midpoint ? 0.5 * share / midpoint : 0.5 + 0.5 * (share - midpoint) / (1 - midpoint);
+    if (p->sharpness > 0.99)
+        return s < 0.5 ? p->a : q->a;
+    if (p->sharpness < 0.01)
+        return mix(p->a, q->a, s);
+    double power = 1 + 10 * p->sharpness;
+    s = s < 0.5 ? 0.5 * pow(2 * s, power) : 1 - 0.5 * pow(2 * (1 - s), power);
+    double slope = (1 - p->sharpness) * (q->a - p->a);
+    double cubic = mix(p->a, q->a, s * s * (3 - 2 * s)) + slope * s * (1 - s) * (1 - 2 * s);
+    return fmin(fmax(cubic, fmin(p->a, q->a)), fmax(p->a, q->a));
+}
+
+static double opacity_at(const transfer *t, double x)
+{
+    size_t above = count_below(&t->opacities[0].value, sizeof *t->opacities, t->opacity_count, x);
+    if (above == 0 || above == t->opacity_count)
+        return t->opacities[above ? above - 1 : 0].a;
+    const transfer_opacity *p = &t->opacities[above - 1], *q = &t->opacities[above];
+    return bend(p, q, share_of(x, p->value, q->value));
+}
+
 transfer_point transfer_at(const transfer *t, double value, double lo, double hi)
 {
     double x = t->normalized ? normalize(value, lo, hi) : value;
-    size_t above = 0;
-    while (above < t->count && t->points[above].value <= x)
-        above++;
-    transfer_point at = t->points[above < t->count ? above : t->count - 1];
-    if (above > 0 && above < t->count) {
-        const transfer_point *p = &t->points[above - 1], *q = &t->points[above];
-        double share = (x - p->value) / (q->value - p->value);
-        at = (transfer_point){0, mix(p->r, q->r, share), mix(p->g, q->g, share), mix(p->b, q->b, share),
-                              mix(p->a, q->a, share)};
-    }
+    transfer_point at = point_at(t, x);
+    if (t->opacities)
+        at.a = opacity_at(t, x);
     at.value = value;
     return at;
 }
@@ -66,60 +117,24 @@ void transfer_table(const transfer *t, double lo, double hi, int density_bits, i
     }
 }
 
-/* Appends a point read from a line; `where` is "path:line". */
-static host_status add_point(transfer *t, const char *line, const char *where, host_error *error)
+/* A colour map in JSON is an object or a list; no line of the text form begins like one. */
+static bool is_json(const char *text)
 {
-    char field[5][64], rest;
-    double number[5];
-    if (sscanf(line, "%63s %63s %63s %63s %63s %c", field[0], field[1], field[2], field[3], field[4], &rest) != 5)
-        return host_fail(error, HOST_BAD_INPUT, "%s: '%.64s' is not of the form `value r g b a`", where, line);
-    for (int i = 0; i < 5; i++) {
-        bool unit = i > 0 || t->normalized;
-        if (!text_number(field[i], unit ? 0 : -HUGE_VAL, unit ? 1 : HUGE_VAL, &number[i]))
-            return host_fail(error, HOST_BAD_INPUT, "%s: %s is '%s' but must be a number%s", where,
-                             i ? (const char *[]){"r", "g", "b", "a"}[i - 1] : "value", field[i],
-                             unit ? " from 0 to 1" : "");
-    }
-    if (t->count && number[0] <= t->points[t->count - 1].value)
-        return host_fail(error, HOST_BAD_INPUT, "%s: value %s is not above the one before it", where, field[0]);
-    transfer_point *grown = realloc(t->points, (t->count + 1) * sizeof *grown);
-    if (!grown)
-        return host_fail(error, HOST_ENVIRONMENT, "%s: no memory", where);
-    t->points = grown;
-    t->points[t->count++] = (transfer_point){number[0], number[1], number[2], number[3], number[4]};
-    return HOST_OK;
+    text += strspn(text, " \t\r\n");
+    return *text == '{' || *text == '[';
 }
 
-static host_status add_line(transfer *t, char *line, const char *where, host_error *error)
+static host_status open_file(const char *path, transfer *t, host_error *error)
 {
-    line += strspn(line, " \t\r");
-    if (*line == '\0')
-        return HOST_OK;
-    if (*line != '#')
-        return add_point(t, line, where, error);
-    char word[16], rest;
-    bool normalized = sscanf(line + 1, "%15s %c", word, &rest) == 1 && strcmp(word, "normalized") == 0;
-    if (normalized && t->count)
-        return host_fail(error, HOST_BAD_INPUT, "%s: `# normalized` must come before the first point", where);
-    t->normalized = t->normalized || normalized;
-    return HOST_OK;
-}
-
-static host_status read_points(transfer *t, char *text, const char *path, host_error *error)
-{
-    host_status status = HOST_OK;
-    char where[512];
-    for (int number = 1; status == HOST_OK && *text; number++) {
-        size_t n = strcspn(text, "\n");
-        char *next = text + n + (text[n] == '\n');
-        text[n] = '\0';
-        snprintf(where, sizeof where, "%s:%d", path, number);
-        status = add_line(t, text, where, error);
-        text = next;
-    }
-    if (status == HOST_OK && t->count == 0)
-        return host_fail(error, HOST_BAD_INPUT, "%s: it holds no point, at least one line `value r g b a` is needed",
-                         path);
+    char *text;
+    host_error reason;
+    host_status status = text_read(path, "transfer function", &text, &reason);
+    if (status != HOST_OK)
+        return host_fail(error, status, "--tf: %.700s (built in are ramp, bone, skin-bone, vessels, mri)", reason.text);
+    status = is_json(text) ? transfer_parse_paraview(text, path, t, error) : transfer_parse_text(text, path, t, error);
+    free(text);
+    if (status != HOST_OK)
+        transfer_close(t);
     return status;
 }
 
@@ -127,22 +142,12 @@ host_status transfer_open(const char *name_or_path, bool ct, transfer *t, host_e
 {
     *t = (transfer){.name = name_or_path};
     const transfer_builtin *builtin = transfer_builtin_find(name_or_path);
-    if (builtin)
-        return transfer_builtin_open(builtin, ct, t, error);
-    char *text;
-    host_error reason;
-    host_status status = text_read(name_or_path, "transfer function", &text, &reason);
-    if (status != HOST_OK)
-        return host_fail(error, status, "--tf: %.700s (built in are ramp, bone, skin-bone, vessels, mri)", reason.text);
-    status = read_points(t, text, name_or_path, error);
-    free(text);
-    if (status != HOST_OK)
-        transfer_close(t);
-    return status;
+    return builtin ? transfer_builtin_open(builtin, ct, t, error) : open_file(name_or_path, t, error);
 }
 
 void transfer_close(transfer *t)
 {
     free(t->points);
+    free(t->opacities);
     *t = (transfer){0};
 }

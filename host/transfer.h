@@ -1,16 +1,26 @@
-/* transfer.h - transfer functions: built in or read from a text file, and the machine's table made from one. */
+/* transfer.h - transfer functions: built in or read from a file, and the machine's table made from one. */
 #ifndef HOST_TRANSFER_H
 #define HOST_TRANSFER_H
 
+#include "colour.h"
 #include "host.h"
 #include "vodr.h"
 
-/* A control point: colour and opacity are linear between neighbouring points and constant beyond the first and last. */
+/* A control point: the function is constant beyond the first and last. */
 typedef struct transfer_point {
     double value;   /* in the volume's units, or 0 to 1 over the window where the function is normalized */
     double r, g, b; /* 0 to 1, not premultiplied */
     double a;       /* opacity of one finest voxel of depth, 0 to 1 */
 } transfer_point;
+
+/* A control point of an opacity apart from the colours: the way to the next is bent as VTK's piecewise function bends
+ * it (docs/transfer-functions.md). */
+typedef struct transfer_opacity {
+    double value;     /* as of transfer_point */
+    double a;         /* 0 to 1 */
+    double midpoint;  /* where, 0 to 1 of the way to the next point, the opacity is the mean of both */
+    double sharpness; /* 0 linear to 1 a step */
+} transfer_opacity;
 
 typedef struct transfer {
     const char *name;
@@ -20,14 +30,17 @@ typedef struct transfer {
     double ct_lo, ct_hi;
     transfer_point *points; /* values strictly ascending, at least one */
     size_t count;
+    colour_space space;          /* in which colours lie between two points */
+    transfer_opacity *opacities; /* values strictly ascending; NULL: the points' own opacities, linear between them */
+    size_t opacity_count;
 } transfer;
 
 /* The built-in functions' names (ramp, bone, skin-bone, vessels, mri), NULL after the last. */
 const char *const *transfer_names(void);
 
-/* A built-in function by its name, else a text file: lines `value r g b a`, `# normalized` before the first of them
- * where values are 0 to 1 over the window, other `#` comments and empty lines skipped. `ct` says that the volume is a
- * CT in Hounsfield units: the built-in functions for CT then have points in Hounsfield units. */
+/* A built-in function by its name, else a file, known by its content: lines of text `value r g b a`, or a colour map of
+ * ParaView in JSON (docs/transfer-functions.md). `ct` says that the volume is a CT in Hounsfield units: the built-in
+ * functions for CT then have points in Hounsfield units. */
 host_status transfer_open(const char *name_or_path, bool ct, transfer *t, host_error *error);
 void transfer_close(transfer *t);
 

@@ -10,6 +10,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+/* No scanner's voxel is longer, beside its width. */
+enum { MAX_ANISOTROPY = 10000 };
+
 static const struct {
     const char *name;
     size_t bytes;
@@ -74,6 +77,12 @@ static host_status read_header(const char *path, const volume_options *options, 
         return volume_nrrd_header(path, f, error);
     if (volume_is_nifti(path, &damaged))
         return volume_nifti_header(path, f, error);
+    char *header = volume_nifti_header_beside(path);
+    if (header) {
+        host_status status = volume_nifti_header(header, f, error);
+        free(header);
+        return status;
+    }
     if (damaged && !options->dims_vox[0])
         return host_fail(error, HOST_BAD_INPUT, "%s: is a damaged or truncated gzip file", path);
     return volume_raw_header(path, options, f, error);
@@ -88,15 +97,27 @@ host_status volume_check_dims(const char *path, const int64_t dims_vox[3], host_
     return HOST_OK;
 }
 
-static host_status check_header(const char *path, const volume_options *o, const volume_file *f, host_error *error)
+static host_status check_spacing(const char *path, const volume_file *f, host_error *error)
 {
-    host_status status = volume_check_dims(path, f->dims_vox, error);
-    if (status != HOST_OK)
-        return status;
+    double least = INFINITY, most = 0;
     for (int i = 0; i < 3; i++) {
-        if (!(fabs(f->spacing[i]) >= DBL_MIN) || isinf(f->spacing[i]))
+        double spacing = fabs(f->spacing[i]);
+        if (!(spacing >= DBL_MIN) || isinf(spacing))
             return host_fail(error, HOST_BAD_INPUT, "%s: the spacing along %c is %g, must be finite and not 0", path,
                              "xyz"[i], f -> spacing[i]);
+        least = fmin(least, spacing);
+        most = fmax(most, spacing);
+    }
+    if (most / least > MAX_ANISOTROPY)
+        return host_fail(error, HOST_BAD_INPUT,
+                         "%s: the spacing goes from %g to %g, must not differ by more than %d times", path, least, most,
+                         MAX_ANISOTROPY);
+    return HOST_OK;
+}
+
+static host_status check_options(const char *path, const volume_options *o, const volume_file *f, host_error *error)
+{
+    for (int i = 0; i < 3; i++) {
         if (o->dims_vox[i] && o->dims_vox[i] != f->dims_vox[i])
             return host_fail(error, HOST_BAD_INPUT, "--dims: the size along %c is %d, but %s is an %s file of %lld",
                              "xyz"[i], o -> dims_vox[i], path, f -> format, (long long)f -> dims_vox[i]);
@@ -104,9 +125,26 @@ static host_status check_header(const char *path, const volume_options *o, const
             return host_fail(error, HOST_BAD_INPUT, "--crop: the range along %c is %d:%d, must lie within 0:%lld of %s",
                              "xyz"[i], o -> crop_lo[i], o -> crop_hi[i], (long long)f -> dims_vox[i], path);
     }
+    return HOST_OK;
+}
+
+static host_status check_header(const char *path, const volume_options *o, const volume_file *f, host_error *error)
+{
+    host_status status = volume_check_dims(path, f->dims_vox, error);
+    if (status == HOST_OK)
+        status = check_spacing(path, f, error);
+    if (status == HOST_OK)
+        status = check_options(path, o, f, error);
+    if (status != HOST_OK)
+        return status;
     if (!isfinite(f->slope) || !isfinite(f->inter))
         return host_fail(error, HOST_BAD_INPUT, "%s: slope %g and intercept %g must be finite", path, f->slope,
                          f->inter);
+    if (f->oriented && !o->no_orient && !orientation_is_sound(f->direction))
+        return host_fail(error, HOST_BAD_INPUT,
+                         "%s: its orientation (sform, qform or space directions) has no rotation: the axes must run in "
+                         "three directions (--no-orient leaves it out)",
+                         path);
     return HOST_OK;
 }
 

@@ -42,6 +42,10 @@ void volume_file_close(volume_file *f);
 bool volume_is_nrrd(const char *path);
 bool volume_is_nifti(const char *path, bool *damaged);
 
+/* The NIfTI header beside the voxels of a .hdr/.img pair, given the .img; NULL if path is no .img or none is there. The
+ * caller frees it. */
+char *volume_nifti_header_beside(const char *path);
+
 /* Refuses dimensions outside 1 to VODR_MAX_DIM_VOX. */
 host_status volume_check_dims(const char *path, const int64_t dims_vox[3], host_error *error);
 
@@ -52,14 +56,6 @@ host_status volume_read_voxels(const volume_file *f, const int32_t lo[3], const 
 
 /* Frees v->voxels. */
 void volume_free_voxels(volume *v);
-
-/* Replaces what is not printable ASCII, for text from files in sentences. */
-static inline void volume_make_printable(char *text)
-{
-    for (; *text; text++)
-        if (*text < ' ' || *text > '~')
-            *text = '?';
-}
 
 /* Whether this computer stores the high byte first. */
 static inline bool volume_native_big_endian(void)

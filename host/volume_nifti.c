@@ -61,6 +61,20 @@ bool volume_is_nifti(const char *path, bool *damaged)
     return read_header(path, &h, damaged);
 }
 
+char *volume_nifti_header_beside(const char *path)
+{
+    bool damaged;
+    size_t length = strlen(path);
+    if ((length < 4 || strcmp(path + length - 4, ".img") != 0) &&
+        (length < 7 || strcmp(path + length - 7, ".img.gz") != 0))
+        return NULL;
+    char *header = nifti_findhdrname(path);
+    if (header && volume_is_nifti(header, &damaged))
+        return header;
+    free(header);
+    return NULL;
+}
+
 /* libnifti silently mends dimensions, voxel sizes and offsets that are wrong, so they are checked before it sees them.
  */
 static host_status check_numbers(const char *path, const nifti_header *h, volume_file *f, host_error *error)
@@ -73,6 +87,11 @@ static host_status check_numbers(const char *path, const nifti_header *h, volume
         int64_t dim = h->version == 1 ? h->as.v1.dim[i] : h->as.v2.dim[i];
         double size = h->version == 1 ? (double)h->as.v1.pixdim[i] : h->as.v2.pixdim[i];
         if (i <= 3) {
+            if (!(size > 0))
+                return host_fail(error, HOST_BAD_INPUT,
+                                 "%s: field pixdim[%d], the spacing along %c, is %g, must be "
+                                 "above 0",
+                                 path, i, "xyz"[i - 1], size);
             f->dims_vox[i - 1] = dim;
             f->spacing[i - 1] = size;
         } else if (dim != 1) {

@@ -1,5 +1,6 @@
 /* volume_nrrd.c - reads the header of an NRRD file, attached or detached, with teem. */
 #include "orientation.h"
+#include "text.h"
 #include "volume_file.h"
 
 #include <ctype.h>
@@ -116,7 +117,7 @@ static host_status fail_with_biff(const char *path, host_error *error)
         const char *message = strstr(cause, ": ");
         if (cause[0] == '[' && message)
             cause = message + 2;
-        volume_make_printable(text);
+        text_make_printable(text);
     }
     host_fail(error, HOST_BAD_INPUT, "%s: is no valid NRRD file: %.400s", path, cause);
     free(text);

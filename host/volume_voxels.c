@@ -1,5 +1,6 @@
 /* volume_voxels.c - reads the voxels of a volume file: maps them where they lie as in memory, else reads plain bytes,
  * gzip or text run by run, so that a crop never needs the whole volume. */
+#include "text.h"
 #include "volume_file.h"
 
 #include <errno.h>
@@ -89,7 +90,7 @@ static host_status read_text(const volume_file *f, void *to, size_t count, host_
             return fail_short(f, error);
         double value = strtod(word, &end);
         if (*end || !store_number(to, i, f->type, value)) {
-            volume_make_printable(word);
+            text_make_printable(word);
             return host_fail(error, HOST_BAD_INPUT, "%s: '%.40s' among the voxels is no %s", f->data_path, word,
                              volume_type_name(f->type));
         }

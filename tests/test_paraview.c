@@ -182,6 +182,7 @@ static void bad_files(void **state)
         const char *text, *words;
     } cases[] = {
         {"[", ":1: is no valid JSON"},
+        {"[{\"]}\\\n\n", "is no valid JSON"}, /* jansson quotes the line's end */
         {"{\"RGBPoints\":[0,0,0,NaN]}", "is no valid JSON"},
         {"{\"RGBPoints\":[0,0,0,1e999]}", "is no valid JSON"},
         {"{\"Name\":1,\"Name\":2}", "is no valid JSON"},
