@@ -25,12 +25,13 @@ static double overhead(const int32_t edge[3], const double u[3], double fragment
 
 bool fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edge_vox[3])
 {
-    const slice_plane p = slice_plane_of(view, view->slices / 2), next = slice_plane_of(view, view->slices / 2 + 1);
+    const slice_plane p = slice_plane_of(view, view->slices / 2);
     double u[3], v[3], s[3], unit = 1.0 / ((double)((int64_t)1 << view->shift) * (1 << VODR_POSITION_BITS)), best = 0;
+    double depth_step = (double)view->depth_step / (1 << VODR_DEPTH_BITS);
     for (int c = 0; c < 3; c++) {
         u[c] = (double)p.step_u[c] * unit;
         v[c] = (double)p.step_v[c] * unit;
-        s[c] = (double)(next.origin[c] - p.origin[c]) * unit;
+        s[c] = (double)view->step_s[c] * unit * (view->perspective ? depth_step : 1);
     }
     double volume =
         u[0] * (v[1] * s[2] - v[2] * s[1]) + u[1] * (v[2] * s[0] - v[0] * s[2]) + u[2] * (v[0] * s[1] - v[1] * s[0]);
