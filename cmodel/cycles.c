@@ -153,7 +153,13 @@ static void stretch_add(cycles *c, stretch_ring *r, int64_t first, int64_t count
             return;
         }
     }
-    keep(c, stretch_ring_push(r, (stretch){first, count, cycle}));
+    stretch *s = stretch_ring_add(r);
+    keep(c, s != NULL);
+    if (!s)
+        return;
+    s->first = first;
+    s->count = count;
+    s->cycle = cycle;
 }
 
 /* The cycle of a number that was appended, and how many from it on have slope one; forgets what lies before. */
@@ -264,7 +270,7 @@ static void settle_loads(cycles *c)
 static void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count, int64_t cycle);
 static void pop(cycles *c, int32_t count, int64_t cycle);
 static void begin_miss(cycles *c, int64_t cycle);
-static bool resolve_miss(cycles *c, const segment *s);
+static bool resolve_miss(cycles *c, const cycle_run *run, bool slice_start);
 static bool grant(cycles *c);
 
 /* Whether the first of `count` accesses from (x, y) on could find their pixel still being blended. */
@@ -329,9 +335,8 @@ static bool glide(cycles *c, const cycle_op *op)
         read_pixels(c, x, op->y, slice_start, count, cycle);
         return true;
     }
-    const segment s = {.run = run_of(c, op), .slice_start = slice_start};
     begin_miss(c, cycle);
-    while (!resolve_miss(c, &s) && grant(c))
+    while (!resolve_miss(c, &c->details[op->detail], slice_start) && grant(c))
         ;
     return true;
 }
@@ -404,18 +409,33 @@ static void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64
     happened(c, c->last_read + c->m->blend_cycles - 1);
 }
 
+/* Asks the bus for bytes of a line; NULL when memory ran out. */
+static bus_request *request(cycles *c, request_ring *queue, int64_t raised, int64_t line, int64_t bytes)
+{
+    bus_request *r = request_ring_add(queue);
+    keep(c, r != NULL);
+    if (!r)
+        return NULL;
+    r->raised = raised;
+    r->address = line * c->line_bytes;
+    r->bytes = bytes;
+    r->line = line;
+    return r;
+}
+
 /* Writing through: the entry of the write FIFO that the segment's first fragment took. */
 static void take_entry(cycles *c, const segment *s, int64_t cycle)
 {
     bool writes = s->run.written >> s->offset & 1;
     int64_t written = cycle + c->m->blend_cycles;
     keep(c, cycle_ring_push(&c->releases, writes ? UNKNOWN : written));
-    if (writes)
-        keep(c, request_ring_push(&c->write_requests, (bus_request){.raised = written,
-                                                                    .address = s->run.line * c->line_bytes,
-                                                                    .bytes = c->pixel_bytes,
-                                                                    .line = -1,
-                                                                    .entry = c->entries}));
+    if (writes) {
+        bus_request *r = request(c, &c->write_requests, written, s->run.line, c->pixel_bytes);
+        if (r) {
+            r->line = -1;
+            r->entry = c->entries;
+        }
+    }
     c->entries++;
 }
 
@@ -450,19 +470,13 @@ static bool evict(cycles *c, const cycle_run *run, int64_t earliest, int64_t *cy
         return false;
     *cycle = max64(earliest, max64(c->last_read + c->m->blend_cycles, c->write_granted + 1));
     c->write_pending = true;
-    keep(c, request_ring_push(&c->write_requests, (bus_request){.raised = *cycle,
-                                                                .address = run->victim * c->line_bytes,
-                                                                .bytes = c->line_bytes,
-                                                                .line = run->victim}));
+    request(c, &c->write_requests, *cycle, run->victim, c->line_bytes);
     return true;
 }
 
 static void request_fill(cycles *c, const cycle_run *run, int64_t cycle)
 {
-    keep(c, request_ring_push(&c->fill_requests, (bus_request){.raised = cycle,
-                                                               .address = run->line * c->line_bytes,
-                                                               .bytes = c->line_bytes,
-                                                               .line = run->line}));
+    request(c, &c->fill_requests, cycle, run->line, c->line_bytes);
 }
 
 /* ---- blocking: a miss holds everything up ---- */
@@ -473,24 +487,24 @@ static void begin_miss(cycles *c, int64_t cycle)
     c->miss_cycle = cycle;
 }
 
-/* Sees the miss under way, segment s's first fragment, to its end; false when that depends on the bus. */
-static bool resolve_miss(cycles *c, const segment *s)
+/* Sees the miss under way, the run's first access, to its end; false when that depends on the bus. */
+static bool resolve_miss(cycles *c, const cycle_run *run, bool slice_start)
 {
     if (c->miss == MISS_EVICT) {
         int64_t cycle;
-        if (!evict(c, &s->run, c->miss_cycle + 1, &cycle))
+        if (!evict(c, run, c->miss_cycle + 1, &cycle))
             return false;
         c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(cycle - c->miss_cycle - 1);
         c->miss_cycle = cycle;
         c->miss = MISS_FILL;
-        c->fill_done = s->run.reads ? UNKNOWN : cycle;
-        if (s->run.reads)
-            request_fill(c, &s->run, cycle);
+        c->fill_done = run->reads ? UNKNOWN : cycle;
+        if (run->reads)
+            request_fill(c, run, cycle);
     }
     if (c->fill_done == UNKNOWN)
         return false;
     c->n.stalls[VODR_STALL_FILL] += (uint64_t)(c->fill_done + 1 - c->miss_cycle);
-    read_segment_pixels(c, s, 1, c->fill_done + 1);
+    read_pixels(c, run->x, run->y, slice_start, 1, c->fill_done + 1);
     c->cache_free = c->last_read + 1;
     c->miss = MISS_NONE;
     return true;
@@ -615,8 +629,11 @@ static bool advance_tags(cycles *c)
     bool moved = false;
     for (;;) {
         if (c->miss != MISS_NONE && !c->nonblocking) {
-            if (!resolve_miss(c, segment_ring_front(&c->door)))
+            const segment *s = segment_ring_front(&c->door);
+            if (!resolve_miss(c, &s->run, s->slice_start))
                 return moved;
+            if (c->through)
+                take_entry(c, s, c->last_read);
             consume(&c->door, 1);
         } else if (!c->door.count || !pop_segment(c)) {
             return moved;
@@ -752,6 +769,10 @@ static void grant_load(cycles *c, int64_t cycle)
  */
 static bool grant(cycles *c)
 {
+    if (c->fill_requests.count && request_ring_front(&c->fill_requests)->raised < c->memory.free_cycle) {
+        grant_fill(c, c->memory.free_cycle); /* nobody comes before it */
+        return true;
+    }
     int64_t cycle = INT64_MAX, load = load_raised(c);
     int who = -1;
     if (c->fill_requests.count) {

@@ -3,6 +3,8 @@
 memory memory_of(const vodr_machine *machine)
 {
     memory m = {.machine = machine, .next_refresh = machine->dram_refresh_cycles};
+    while (1 << m.bus_bits < machine->mem_bus_bytes)
+        m.bus_bits++;
     for (int i = 0; i < MEMORY_MAX_BANKS; i++)
         m.open_row[i] = -1;
     return m;

@@ -10,6 +10,7 @@ enum { MEMORY_MAX_BANKS = 64 };
 
 typedef struct memory {
     const vodr_machine *machine;
+    int32_t bus_bits;                   /* logarithm of mem_bus_bytes */
     int64_t free_cycle;                 /* the bus can take a grant from this cycle on */
     int64_t open_row[MEMORY_MAX_BANKS]; /* -1: closed */
     int64_t next_refresh;
@@ -22,7 +23,7 @@ memory memory_of(const vodr_machine *machine);
 /* Cycles that the bus needs to move so many bytes. */
 static inline int64_t memory_beats(const memory *m, int64_t bytes)
 {
-    return (bytes + m->machine->mem_bus_bytes - 1) / m->machine->mem_bus_bytes;
+    return (bytes + m->machine->mem_bus_bytes - 1) >> m->bus_bits;
 }
 
 /* Grants a transaction in `cycle`, at least free_cycle. Returns the cycle in which its last data move. */

@@ -24,13 +24,13 @@
     {                                                                                                                  \
         return name##_at(r, r->count - 1);                                                                             \
     }                                                                                                                  \
-    static inline bool name##_push(name *r, type item)                                                                 \
+    static inline type *name##_add(name *r) /* room for one more at the back, not initialised; NULL: no memory */      \
     {                                                                                                                  \
         if (r->count == r->room) {                                                                                     \
             size_t room = r->room ? 2 * r->room : 64;                                                                  \
             type *items = malloc(room * sizeof *items);                                                                \
             if (!items)                                                                                                \
-                return false;                                                                                          \
+                return NULL;                                                                                           \
             for (size_t i = 0; i < r->count; i++)                                                                      \
                 items[i] = *name##_at(r, i);                                                                           \
             free(r->items);                                                                                            \
@@ -39,8 +39,14 @@
             r->head = 0;                                                                                               \
         }                                                                                                              \
         r->count++;                                                                                                    \
-        *name##_back(r) = item;                                                                                        \
-        return true;                                                                                                   \
+        return name##_back(r);                                                                                         \
+    }                                                                                                                  \
+    static inline bool name##_push(name *r, type item)                                                                 \
+    {                                                                                                                  \
+        type *back = name##_add(r);                                                                                    \
+        if (back)                                                                                                      \
+            *back = item;                                                                                              \
+        return back != NULL;                                                                                           \
     }                                                                                                                  \
     static inline void name##_pop(name *r)                                                                             \
     {                                                                                                                  \
