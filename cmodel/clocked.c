@@ -316,7 +316,9 @@ static void offer(clocked *c)
         c->n.stalls[VODR_STALL_TEXTURE_LOAD]++;
         return;
     }
-    if (inside >= c->m->fragment_fifo) {
+    /* Fetches from external memory hold as many fragments more as they take cycles. */
+    int64_t room = c->m->fragment_fifo + (c->m->traversal == VODR_TRAVERSAL_WHOLE ? c->m->mem_latency_cycles : 0);
+    if (inside >= room) {
         c->n.stalls[VODR_STALL_FRAGMENT_FIFO]++;
         return;
     }

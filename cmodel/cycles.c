@@ -77,7 +77,7 @@ typedef enum miss_state { MISS_NONE, MISS_EVICT, MISS_FILL } miss_state;
 
 struct cycles {
     const vodr_machine *m;
-    int64_t latency, texture_base, line_bytes, pixel_bytes;
+    int64_t latency, fifo, texture_base, line_bytes, pixel_bytes;
     bool eager, nonblocking, through, failed, ended;
     vodr_cycles n;
     int64_t last; /* cycle in which something happened */
@@ -220,7 +220,7 @@ static cycle_run run_of(const cycles *c, const cycle_op *op)
 /* Offers the rest of a run; false when it is unknown when the texture unit accepts it. */
 static bool offer(cycles *c, const cycle_op *op)
 {
-    int64_t cycle = c->raster, length = op->count - c->op_done, number = c->accepted - c->m->fragment_fifo;
+    int64_t cycle = c->raster, length = op->count - c->op_done, number = c->accepted - c->fifo;
     if (c->loading) {
         const visit_state *v = visit_at(c, c->current);
         if (v->loaded == UNKNOWN)
@@ -272,6 +272,7 @@ static void pop(cycles *c, int32_t count, int64_t cycle);
 static void begin_miss(cycles *c, int64_t cycle);
 static bool resolve_miss(cycles *c, const cycle_run *run, bool slice_start);
 static bool grant(cycles *c);
+static void finish_load(cycles *c);
 
 /* Whether the first of `count` accesses from (x, y) on could find their pixel still being blended. */
 static bool may_conflict(const cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count)
@@ -300,9 +301,10 @@ static bool glide(cycles *c, const cycle_op *op)
         return false;
     bool miss = op->miss && c->op_done == 0;
     int64_t count = miss ? 1 : op->count - c->op_done, ready = c->raster, length;
-    if (miss && !c->eager && c->visit_fragments - c->visit_accepted <= c->m->fragment_fifo + 1)
+    if (miss && !c->eager && c->visit_fragments - c->visit_accepted <= c->fifo + 1)
         return false;
     if (c->loading) {
+        finish_load(c);
         int64_t loaded = visit_at(c, c->current)->loaded;
         if (loaded == UNKNOWN)
             return false;
@@ -313,7 +315,7 @@ static bool glide(cycles *c, const cycle_op *op)
     if (may_conflict(c, x, op->y, slice_start, count))
         return false;
     int64_t head = max64(ready + c->latency, c->last_pop + 1), cycle = max64(head, c->cache_free);
-    int64_t accept = ready + count - 1, room = c->accepted + count - 1 - c->m->fragment_fifo;
+    int64_t accept = ready + count - 1, room = c->accepted + count - 1 - c->fifo;
     if (room >= c->popped)
         accept = max64(accept, cycle + (room - c->popped) + 1);
     else if (room >= 0)
@@ -765,6 +767,24 @@ static void grant_load(cycles *c, int64_t cycle)
     }
 }
 
+/* The brick that the rasterizer waits for is loaded to its end: nothing else is on its way that could ask for the bus.
+ * With a fixed latency and nobody in its way a load's bursts follow each other without a gap. */
+static void finish_load(cycles *c)
+{
+    visit_state *v = visit_at(c, c->current);
+    while (v->loaded == UNKNOWN && grant(c)) {
+        int64_t burst = c->m->texture_burst_bytes, whole = (v->visit.load_bytes - c->load_bytes - 1) / burst;
+        if (v->loaded != UNKNOWN || c->load_visit != c->current || !c->load_bytes || c->write_requests.count ||
+            whole < 1 || c->m->memory != VODR_MEMORY_FIXED)
+            continue;
+        int64_t beats = memory_beats(&c->memory, burst);
+        c->load_bytes += whole * burst;
+        c->load_grant = c->memory.free_cycle + (whole - 1) * beats;
+        c->memory.free_cycle += whole * beats;
+        c->memory.busy_cycles += (uint64_t)(whole * beats);
+    }
+}
+
 /* Grants the next transaction: the earliest, and of equals fills before writes before loads. False when there is none.
  */
 static bool grant(cycles *c)
@@ -826,9 +846,10 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     c->nonblocking = m->nonblocking;
     c->through = m->write_policy == VODR_WRITE_POLICY_THROUGH;
     c->latency = m->texture_latency_cycles + (c->eager ? m->mem_latency_cycles : 0);
+    c->fifo = m->fragment_fifo + (c->eager ? m->mem_latency_cycles : 0);
     c->line_bytes = line_bytes(m);
     c->pixel_bytes = pixel_bytes(m);
-    c->glides = !c->nonblocking && !c->through && c->latency < m->fragment_fifo;
+    c->glides = !c->nonblocking && !c->through && c->latency < c->fifo;
     c->texture_base = layout.lines * line_bytes(m);
     c->memory = memory_of(m);
     c->announced = c->current = -1;
