@@ -273,6 +273,7 @@ static void begin_miss(cycles *c, int64_t cycle);
 static bool resolve_miss(cycles *c, const cycle_run *run, bool slice_start);
 static bool grant(cycles *c);
 static void finish_load(cycles *c);
+static void miss_at_once(cycles *c, const cycle_run *run, bool slice_start, int64_t cycle);
 
 /* Whether the first of `count` accesses from (x, y) on could find their pixel still being blended. */
 static bool may_conflict(const cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count)
@@ -337,8 +338,13 @@ static bool glide(cycles *c, const cycle_op *op)
         read_pixels(c, x, op->y, slice_start, count, cycle);
         return true;
     }
+    const cycle_run *run = &c->details[op->detail];
+    if (!c->write_pending && (run->reads || !run->evicts)) {
+        miss_at_once(c, run, slice_start, cycle);
+        return true;
+    }
     begin_miss(c, cycle);
-    while (!resolve_miss(c, &c->details[op->detail], slice_start) && grant(c))
+    while (!resolve_miss(c, run, slice_start) && grant(c))
         ;
     return true;
 }
@@ -765,6 +771,28 @@ static void grant_load(cycles *c, int64_t cycle)
         c->load_bytes = 0;
         c->load_visit++;
     }
+}
+
+/* A blocking miss looked up in `cycle`, with no other fill or write under way: loads that the bus takes before it come
+ * first, then its fill, then its write-back, before anything else can ask. */
+static void miss_at_once(cycles *c, const cycle_run *run, bool slice_start, int64_t cycle)
+{
+    int64_t moved = cycle + 1;
+    if (run->evicts)
+        moved = max64(moved, max64(c->last_read + c->m->blend_cycles, c->write_granted + 1));
+    int64_t filled = moved, raised;
+    while ((run->reads || run->evicts) && (raised = load_raised(c)) != UNKNOWN && eligible(c, raised) <= moved)
+        grant_load(c, eligible(c, raised));
+    if (run->reads)
+        filled = memory_grant(&c->memory, eligible(c, moved), run->line * c->line_bytes, c->line_bytes, false);
+    if (run->evicts) {
+        c->write_granted = eligible(c, moved);
+        happened(c, memory_grant(&c->memory, c->write_granted, run->victim * c->line_bytes, c->line_bytes, true));
+    }
+    c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(moved - cycle - 1);
+    c->n.stalls[VODR_STALL_FILL] += (uint64_t)(filled + 1 - moved);
+    read_pixels(c, run->x, run->y, slice_start, 1, filled + 1);
+    c->cache_free = c->last_read + 1;
 }
 
 /* The brick that the rasterizer waits for is loaded to its end: nothing else is on its way that could ask for the bus.

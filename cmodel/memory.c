@@ -10,8 +10,7 @@ memory memory_of(const vodr_machine *machine)
     return m;
 }
 
-/* Cycles from the grant until the row is open and no refresh is under way. */
-static int64_t open_row(memory *m, int64_t cycle, int64_t address)
+int64_t memory_open_row(memory *m, int64_t cycle, int64_t address)
 {
     const vodr_machine *p = m->machine;
     int64_t wait = 0, row = address / p->dram_row_bytes, bank = row % p->dram_banks;
@@ -31,16 +30,4 @@ static int64_t open_row(memory *m, int64_t cycle, int64_t address)
         m->open_row[bank] = row;
     }
     return wait;
-}
-
-int64_t memory_grant(memory *m, int64_t cycle, int64_t address, int64_t bytes, bool write)
-{
-    const vodr_machine *p = m->machine;
-    bool dram = p->memory == VODR_MEMORY_DRAM;
-    int64_t beats = memory_beats(m, bytes), wait = dram ? open_row(m, cycle, address) : 0;
-    m->free_cycle = cycle + wait + beats;
-    m->busy_cycles += (uint64_t)beats;
-    if (write)
-        return m->free_cycle - 1;
-    return m->free_cycle - 1 + (dram ? p->dram_tcas_cycles : p->mem_latency_cycles);
 }

@@ -26,7 +26,18 @@ static inline int64_t memory_beats(const memory *m, int64_t bytes)
     return (bytes + m->machine->mem_bus_bytes - 1) >> m->bus_bits;
 }
 
+/* DRAM: cycles from a grant until its row is open and no refresh is under way. */
+int64_t memory_open_row(memory *m, int64_t cycle, int64_t address);
+
 /* Grants a transaction in `cycle`, at least free_cycle. Returns the cycle in which its last data move. */
-int64_t memory_grant(memory *m, int64_t cycle, int64_t address, int64_t bytes, bool write);
+static inline int64_t memory_grant(memory *m, int64_t cycle, int64_t address, int64_t bytes, bool write)
+{
+    const vodr_machine *p = m->machine;
+    bool dram = p->memory == VODR_MEMORY_DRAM;
+    int64_t beats = memory_beats(m, bytes);
+    m->free_cycle = cycle + beats + (dram ? memory_open_row(m, cycle, address) : 0);
+    m->busy_cycles += (uint64_t)beats;
+    return m->free_cycle - 1 + (write ? 0 : dram ? p->dram_tcas_cycles : p->mem_latency_cycles);
+}
 
 #endif
