@@ -248,8 +248,6 @@ static bool offer(cycles *c, const cycle_op *op)
     c->raster = open + length;
     c->last_accept = c->raster - 1;
     c->op_done += (int32_t)length;
-    c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)length;
-    c->n.blocks[VODR_BLOCK_TEXTURE_UNIT].busy += (uint64_t)length;
     return true;
 }
 
@@ -324,8 +322,6 @@ static bool glide(cycles *c, const cycle_op *op)
     c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(ready - c->raster);
     c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(accept - (ready + count - 1));
     c->n.stalls[VODR_STALL_CACHE] += (uint64_t)(cycle - head);
-    c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)count;
-    c->n.blocks[VODR_BLOCK_TEXTURE_UNIT].busy += (uint64_t)count;
     c->loading = c->slice_starts = false;
     c->accepted += count;
     c->visit_accepted += count;
@@ -371,7 +367,6 @@ static bool advance_raster(cycles *c)
     }
     if (c->current >= 0 && !c->eager)
         visit_at(c, c->current)->drained = c->last_accept;
-    happened(c, c->raster - 1);
     return moved;
 }
 
@@ -413,8 +408,6 @@ static void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64
     c->read_count += count;
     c->slice_reads += count;
     c->last_read = cycle + count - 1;
-    c->n.blocks[VODR_BLOCK_PIXEL_CACHE].busy += (uint64_t)count;
-    happened(c, c->last_read + c->m->blend_cycles - 1);
 }
 
 /* Asks the bus for bytes of a line; NULL when memory ran out. */
@@ -579,8 +572,6 @@ static void pop(cycles *c, int32_t count, int64_t cycle)
     stretch_add(c, &c->pops, c->popped, count, cycle);
     c->popped += count;
     c->last_pop = cycle + count - 1;
-    c->n.blocks[VODR_BLOCK_ALPHA_BLENDER].busy += (uint64_t)count;
-    happened(c, c->last_pop);
 }
 
 /* Pops what it can of the first segment; false when that is unknown. */
@@ -1038,6 +1029,12 @@ bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
     c->ended = true;
     pump(c);
     flush(c);
+    n->blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)c->accepted;
+    n->blocks[VODR_BLOCK_TEXTURE_UNIT].busy = (uint64_t)c->accepted;
+    n->blocks[VODR_BLOCK_ALPHA_BLENDER].busy = (uint64_t)c->popped;
+    n->blocks[VODR_BLOCK_PIXEL_CACHE].busy = (uint64_t)c->read_count;
+    happened(c, max64(c->raster - 1, c->last_pop));
+    happened(c, c->last_read + c->m->blend_cycles - 1);
     n->blocks[VODR_BLOCK_VOLUME_DIVIDER].busy += (uint64_t)work_cycles;
     happened(c, (c->announced < 0 ? -1 : visit_at(c, c->announced)->divided) + work_cycles);
     n->total = (uint64_t)(c->last + 1);
