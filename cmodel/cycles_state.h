@@ -1,0 +1,232 @@
+/* cycles_state.h - what the parts of the cycle count share (cycles.h has its public face): times of fragments, and the
+ * actors' calls to each other. */
+#ifndef VODR_CYCLES_STATE_H
+#define VODR_CYCLES_STATE_H
+
+#include "cycles.h"
+#include "ring.h"
+
+#define CYCLE_UNKNOWN INT64_MIN
+
+enum { VISITS = 8 };
+
+typedef enum op_kind { OP_SLICE, OP_ROWS, OP_RUN } op_kind;
+
+/* What the rasterizer does next. Most runs hit, and of those no more than their pixels matters. */
+typedef struct cycle_op {
+    op_kind kind;
+    int32_t count; /* rows, or fragments */
+    int32_t x, y;
+    bool slice_start; /* a run: the first of its slice */
+    bool killed, miss;
+    int32_t detail; /* its number among details; -1: none */
+} cycle_op;
+
+/* `count` fragments of a run from its fragment `offset` on, fragment n of them at `cycle` + n. */
+typedef struct segment {
+    cycle_run run;
+    bool killed;
+    bool slice_start;
+    int32_t offset, count;
+    int64_t cycle;
+} segment;
+
+/* Fragments or accesses by number: number `first` + n at `cycle` + n. */
+typedef struct stretch {
+    int64_t first, count, cycle;
+} stretch;
+
+typedef struct bus_request {
+    int64_t raised, address, bytes;
+    int64_t line;  /* a write-back's; -1: a pixel written through */
+    int64_t entry; /* of the write FIFO, written through */
+} bus_request;
+
+/* A write-back that was granted. */
+typedef struct departure {
+    int64_t line, granted;
+} departure;
+
+/* Pixels of a row that were read not long ago, one a cycle. */
+typedef struct recent {
+    int32_t x, y;
+    int64_t count, cycle;
+} recent;
+
+RING(segment_ring, segment)
+RING(stretch_ring, stretch)
+RING(request_ring, bus_request)
+RING(departure_ring, departure)
+RING(cycle_ring, int64_t)
+
+typedef struct visit_state {
+    cycle_visit visit;
+    int64_t divided; /* pushed by the divider */
+    int64_t loaded;  /* last data of its load */
+    int64_t drained; /* its last fragment was accepted */
+} visit_state;
+
+/* A miss that holds up the blocking cache, or the data stage. */
+typedef enum miss_state { MISS_NONE, MISS_EVICT, MISS_FILL } miss_state;
+
+struct cycles {
+    const vodr_machine *m;
+    int64_t latency, fifo, texture_base, line_bytes, pixel_bytes;
+    bool eager, nonblocking, through, failed, ended;
+    vodr_cycles n;
+    int64_t last; /* cycle in which something happened */
+
+    cycle_op *ops; /* of the visit worked on; unless eager, all of them, once the next visit is known */
+    size_t op_count, op_room, op_next;
+    int32_t op_done;    /* fragments of ops[op_next] accepted */
+    bool new_slice;     /* the next run added begins a slice */
+    cycle_run *details; /* of its runs: those that missed, or all when writing through */
+    size_t detail_count, detail_room;
+    visit_state visits[VISITS];
+    int64_t announced, current;              /* numbers of visits; -1: none */
+    bool loading;                            /* the current visit's first fragment has not been accepted */
+    int64_t visit_fragments, visit_accepted; /* of the current visit */
+    bool glides;                             /* a blocking cache, and a FIFO longer than the way to the blender */
+
+    int64_t brick_taken, slice_made, slice_taken, raster, last_accept, accepted;
+
+    segment_ring door; /* accepted, not yet popped */
+    stretch_ring pops; /* by fragment */
+    int64_t popped, last_pop, cache_free;
+    bool slice_starts; /* with the next fragment that is alive */
+
+    segment_ring tagged;   /* non-blocking: looked up, data not yet read */
+    stretch_ring reads;    /* by access */
+    cycle_ring miss_reads; /* by miss, from number miss_first on */
+    int64_t tag_count, read_count, last_read, miss_tags, miss_first;
+    recent *recents; /* the last ones, that hold blend_cycles pixels or more; a ring */
+    int64_t recent_count, recent_mask;
+    int64_t slice_reads;
+
+    miss_state miss;
+    int64_t miss_cycle, fill_done, write_granted;
+    bool write_pending;
+    cycle_ring fills;          /* non-blocking: last data of granted reads, in order */
+    departure_ring departures; /* not long ago */
+    cycle_ring releases;       /* write-through: by entry of its FIFO, from number release_first on */
+    int64_t entries, release_first;
+
+    memory memory;
+    request_ring fill_requests, write_requests;
+    cycle_ring dirty; /* lines to flush at the end */
+    int64_t load_visit, load_bytes, load_grant;
+};
+
+static inline int64_t max64(int64_t a, int64_t b)
+{
+    return a > b ? a : b;
+}
+
+static inline void happened(cycles *c, int64_t cycle)
+{
+    c->last = max64(c->last, cycle);
+}
+
+static inline void keep(cycles *c, bool pushed)
+{
+    c->failed |= !pushed;
+}
+
+static inline visit_state *visit_at(cycles *c, int64_t number)
+{
+    return &c->visits[number & (VISITS - 1)];
+}
+
+/* Appends `count` numbers at slope one. */
+static inline void stretch_add(cycles *c, stretch_ring *r, int64_t first, int64_t count, int64_t cycle)
+{
+    if (r->count) {
+        stretch *s = stretch_ring_back(r);
+        if (s->first + s->count == first && s->cycle + s->count == cycle) {
+            s->count += count;
+            return;
+        }
+    }
+    stretch *s = stretch_ring_add(r);
+    keep(c, s != NULL);
+    if (!s)
+        return;
+    s->first = first;
+    s->count = count;
+    s->cycle = cycle;
+}
+
+/* The cycle of a number that was appended, and how many from it on have slope one; forgets what lies before. */
+static inline int64_t stretch_cycle(stretch_ring *r, int64_t number, int64_t *length)
+{
+    while (stretch_ring_front(r)->first + stretch_ring_front(r)->count <= number)
+        stretch_ring_pop(r);
+    const stretch *s = stretch_ring_front(r);
+    *length = s->first + s->count - number;
+    return s->cycle + (number - s->first);
+}
+
+/* `count` pixels from (x, y) on read from `cycle` on; the blender writes them blend_cycles later. */
+static inline void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count, int64_t cycle)
+{
+    if (slice_start)
+        c->slice_reads = 0;
+    if (c->nonblocking)
+        stretch_add(c, &c->reads, c->read_count, count, cycle);
+    c->recents[c->recent_count++ & c->recent_mask] = (recent){x, y, count, cycle};
+    c->read_count += count;
+    c->slice_reads += count;
+    c->last_read = cycle + count - 1;
+}
+
+static inline void pop(cycles *c, int32_t count, int64_t cycle)
+{
+    stretch_add(c, &c->pops, c->popped, count, cycle);
+    c->popped += count;
+    c->last_pop = cycle + count - 1;
+}
+
+/* ---- divider, slice generator, rasterizer, texture unit: cycles_front.c ---- */
+
+/* Brick `number` is handed on by the divider: as soon as it is found, and the slice generator has taken the one before.
+ */
+void cycles_divide(cycles *c, int64_t number);
+
+/* The slice generator takes the next brick. */
+void cycles_enter_visit(cycles *c);
+
+/* Rasterizes as far as what is known allows; whether anything moved. */
+bool cycles_advance_raster(cycles *c);
+
+/* ---- alpha blender and pixel cache: cycles_cache.c ---- */
+
+/* Pops and looks up, or reads the data of a non-blocking cache, as far as what is known allows; whether anything moved.
+ */
+bool cycles_advance_tags(cycles *c);
+bool cycles_advance_data(cycles *c);
+
+/* A blocking cache's miss, looked up in `cycle`, and its way to the end; false when that depends on the bus. */
+void cycles_begin_miss(cycles *c, int64_t cycle);
+bool cycles_resolve_miss(cycles *c, const cycle_run *run, bool slice_start);
+
+/* A dirty line moves to the write buffer from cycle `earliest` on, once blends are over and the buffer is free. False
+ * when it is unknown when that is. */
+bool cycles_evict(cycles *c, const cycle_run *run, int64_t earliest, int64_t *cycle);
+
+/* ---- the bus: cycles_bus.c ---- */
+
+/* Grants the next transaction: the earliest, and of equals fills before writes before loads. False when there is none.
+ */
+bool cycles_grant(cycles *c);
+
+/* Bricks that need no loading are there once the divider handed them on. */
+void cycles_settle_loads(cycles *c);
+
+/* The brick that the rasterizer waits for is loaded to its end: nothing else is on its way that could ask for the bus.
+ */
+void cycles_finish_load(cycles *c);
+
+/* A blocking miss looked up in `cycle`, with no other fill or write under way, to its end. */
+void cycles_miss_at_once(cycles *c, const cycle_run *run, bool slice_start, int64_t cycle);
+
+#endif
