@@ -37,7 +37,7 @@ typedef struct link {
 
 /* A fragment between rasterizer and data stage. */
 typedef struct fragment {
-    int32_t x, y, k;
+    int32_t x, y;
     int64_t cycle; /* accepted; later looked up */
     bool dead, miss, reads, evicts, writes;
     int64_t line, victim;
@@ -85,7 +85,7 @@ typedef struct clocked {
 
     /* slice generator */
     slice_generator slices;
-    bool generating, slice_ready;
+    bool generating;
     int64_t setup_left;
     brick_slice next_slice, slice;
     int64_t slice_visit, drawn_slice_visit;

@@ -14,7 +14,6 @@ fragment clocked_shade(clocked *c, int64_t number, const brick_slice *slice, con
     texture_unit_filter(&c->texture, slice, &one, &c->density);
     return (fragment){.x = one.x0,
                       .y = one.y,
-                      .k = slice->k,
                       .cycle = c->now,
                       .dead = c->texture.dead[c->density],
                       .colour = c->texture.colours[c->density]};

@@ -10,6 +10,9 @@ vodr_status vodr_fail(vodr_error *error, vodr_status status, const char *format,
         va_start(arguments, format);
         vsnprintf(error->text, sizeof error->text, format, arguments);
         va_end(arguments);
+        /* Quoted input may hold anything; the sentence stays one line. */
+        for (char *c = error->text; *c; c++)
+            *c = (unsigned char)*c < ' ' || *c == 127 ? '?' : *c;
     }
     return status;
 }
