@@ -83,6 +83,8 @@ static bool make_room(cycles *c, void *items, size_t count, size_t *room, size_t
 static void drop_ops(cycles *c)
 {
     int32_t first = -1;
+    if (!c->op_next)
+        return;
     c->op_count -= c->op_next;
     memmove(c->ops, c->ops + c->op_next, c->op_count * sizeof *c->ops);
     c->op_next = 0;
@@ -93,7 +95,8 @@ static void drop_ops(cycles *c)
         }
     size_t dropped = first < 0 ? c->detail_count : (size_t)first;
     c->detail_count -= dropped;
-    memmove(c->details, c->details + dropped, c->detail_count * sizeof *c->details);
+    if (c->detail_count)
+        memmove(c->details, c->details + dropped, c->detail_count * sizeof *c->details);
 }
 
 static void add_op(cycles *c, cycle_op op)
