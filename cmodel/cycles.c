@@ -134,12 +134,33 @@ void cycles_slice(cycles *c)
 {
     add_op(c, (cycle_op){.kind = OP_SLICE, .detail = -1});
     c->new_slice = true;
+    c->slice_added = 0;
 }
 
 void cycles_rows(cycles *c, int32_t count)
 {
     if (count)
-        add_op(c, (cycle_op){.kind = OP_ROWS, .count = count, .detail = -1});
+        add_op(c, (cycle_op){.kind = OP_ROWS, .px.count = count, .detail = -1});
+}
+
+/* Adds pixels to a run where they go on from it: in its last row, or as a row of their own below. A row of its own has
+ * to be as long as a blend, and so has what its slice had before: then hazards never ask for what lies between. */
+static bool lengthen(pixel_rows *px, int32_t x, int32_t y, int32_t count, bool new_row)
+{
+    bool several = px->last > 0;
+    int32_t end = several ? px->last_x + px->last : px->x + px->first;
+    if (y == (several ? px->last_y : px->y) && x == end) {
+        px->first += several ? 0 : count;
+        px->last += several ? count : 0;
+    } else if (new_row) {
+        px->last_x = x;
+        px->last_y = y;
+        px->last = count;
+    } else {
+        return false;
+    }
+    px->count += count;
+    return true;
 }
 
 /* Adds fragments to the run before where they go on from it, so that both move as one; else false. Which line they are
@@ -149,31 +170,38 @@ static bool prolong(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
     if (c->through || c->op_next == c->op_count)
         return false;
     cycle_op *before = &c->ops[c->op_count - 1];
-    bool goes_on =
-        before->kind == OP_RUN && before->killed == killed && before->y == y && before->x + before->count == x;
-    before->count += goes_on ? count : 0;
-    return goes_on;
+    int32_t window = c->m->blend_cycles;
+    bool new_row = !killed && !c->new_slice && count >= window && c->slice_added >= window;
+    return before->kind == OP_RUN && before->killed == killed && lengthen(&before->px, x, y, count, new_row);
 }
 
 static void add_run(cycles *c, int32_t x, int32_t y, int32_t count, bool killed, int32_t detail)
 {
-    cycle_op op = {.kind = OP_RUN, .count = count, .x = x, .y = y, .killed = killed, .detail = detail};
+    cycle_op op = {.kind = OP_RUN, .px = {.count = count, .x = x, .y = y, .first = count}, .killed = killed};
+    op.detail = detail;
     op.slice_start = c->new_slice;
     op.miss = detail >= 0 && c->details[detail].miss;
     c->new_slice = false;
     add_op(c, op);
 }
 
-void cycles_hits(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
+/* Fragments join the visit and the slice, but for those that are killed, which no hazard concerns. */
+static void tally(cycles *c, int32_t count, bool killed)
 {
     c->visit_fragments += count;
+    c->slice_added += killed ? 0 : count;
+}
+
+void cycles_hits(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
+{
     if (!prolong(c, x, y, count, killed))
         add_run(c, x, y, count, killed, -1);
+    tally(c, count, killed);
 }
 
 void cycles_access(cycles *c, const cycle_run *run)
 {
-    c->visit_fragments += run->count;
+    tally(c, run->count, false);
     if (!make_room(c, &c->details, c->detail_count, &c->detail_room, sizeof *c->details))
         return;
     c->details[c->detail_count] = *run;

@@ -82,7 +82,7 @@ static void grant_load(cycles *c, int64_t cycle)
 
 /* A blocking miss looked up in `cycle`, with no other fill or write under way: loads that the bus takes before it come
  * first, then its fill, then its write-back, before anything else can ask. */
-void cycles_miss_at_once(cycles *c, const cycle_run *run, bool slice_start, int64_t cycle)
+void cycles_miss_at_once(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start, int64_t cycle)
 {
     int64_t moved = cycle + 1;
     if (run->evicts)
@@ -98,7 +98,7 @@ void cycles_miss_at_once(cycles *c, const cycle_run *run, bool slice_start, int6
     }
     c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(moved - cycle - 1);
     c->n.stalls[VODR_STALL_FILL] += (uint64_t)(filled + 1 - moved);
-    read_pixels(c, run->x, run->y, slice_start, 1, filled + 1);
+    read_pixels(c, px, 0, slice_start, 1, filled + 1);
     c->cache_free = c->last_read + 1;
 }
 

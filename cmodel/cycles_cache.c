@@ -63,7 +63,7 @@ static void take_entry(cycles *c, const segment *s, int64_t cycle)
 /* The first `count` fragments of a segment are read. */
 static void read_segment_pixels(cycles *c, const segment *s, int32_t count, int64_t cycle)
 {
-    read_pixels(c, s->run.x + s->offset, s->run.y, s->slice_start, count, cycle);
+    read_pixels(c, &s->px, s->offset, s->slice_start, count, cycle);
     if (c->through)
         take_entry(c, s, cycle);
 }
@@ -107,7 +107,7 @@ void cycles_begin_miss(cycles *c, int64_t cycle)
 }
 
 /* Sees the miss under way, the run's first access, to its end; false when that depends on the bus. */
-bool cycles_resolve_miss(cycles *c, const cycle_run *run, bool slice_start)
+bool cycles_resolve_miss(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start)
 {
     if (c->miss == MISS_EVICT) {
         int64_t cycle;
@@ -123,7 +123,7 @@ bool cycles_resolve_miss(cycles *c, const cycle_run *run, bool slice_start)
     if (c->fill_done == CYCLE_UNKNOWN)
         return false;
     c->n.stalls[VODR_STALL_FILL] += (uint64_t)(c->fill_done + 1 - c->miss_cycle);
-    read_pixels(c, run->x, run->y, slice_start, 1, c->fill_done + 1);
+    read_pixels(c, px, 0, slice_start, 1, c->fill_done + 1);
     c->cache_free = c->last_read + 1;
     c->miss = MISS_NONE;
     return true;
@@ -207,7 +207,7 @@ static bool pop_segment(cycles *c)
     int32_t count = c->nonblocking ? (c->through || (s->run.miss && !s->offset) ? 1 : s->count) : stride(c, s);
     count = length < count ? (int32_t)length : count;
     if (!c->nonblocking) {
-        int64_t clear = max64(cycle, hazard(c, s->run.x + s->offset, s->run.y));
+        int64_t clear = max64(cycle, hazard(c, s->px.x + s->offset, s->px.y));
         c->n.stalls[VODR_STALL_HAZARD] += (uint64_t)(clear - cycle);
         cycle = clear;
     }
@@ -240,7 +240,7 @@ bool cycles_advance_tags(cycles *c)
     for (;;) {
         if (c->miss != MISS_NONE && !c->nonblocking) {
             const segment *s = segment_ring_front(&c->door);
-            if (!cycles_resolve_miss(c, &s->run, s->slice_start))
+            if (!cycles_resolve_miss(c, &s->run, &s->px, s->slice_start))
                 return moved;
             if (c->through)
                 take_entry(c, s, c->last_read);
@@ -262,7 +262,7 @@ static bool read_segment(cycles *c)
         c->slice_reads = 0;
     if (c->miss == MISS_NONE) {
         int64_t base = max64(s->cycle + 1, c->last_read + 1);
-        int64_t clear = max64(base, hazard(c, s->run.x + s->offset, s->run.y));
+        int64_t clear = max64(base, hazard(c, s->px.x + s->offset, s->px.y));
         if (!miss) {
             int32_t count = stride(c, s);
             c->n.stalls[VODR_STALL_HAZARD] += (uint64_t)(clear - base);

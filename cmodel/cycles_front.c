@@ -34,21 +34,10 @@ static void take_slice(cycles *c)
     c->n.blocks[VODR_BLOCK_RASTERIZER].busy++;
 }
 
-static cycle_run run_of(const cycles *c, const cycle_op *op)
-{
-    cycle_run run = {.count = 0};
-    if (op->detail >= 0)
-        run = c->details[op->detail];
-    run.x = op->x;
-    run.y = op->y;
-    run.count = op->count;
-    return run;
-}
-
 /* Offers the rest of a run; false when it is unknown when the texture unit accepts it. */
 static bool offer(cycles *c, const cycle_op *op)
 {
-    int64_t cycle = c->raster, length = op->count - c->op_done, number = c->accepted - c->fifo;
+    int64_t cycle = c->raster, length = op->px.count - c->op_done, number = c->accepted - c->fifo;
     if (c->loading) {
         const visit_state *v = visit_at(c, c->current);
         if (v->loaded == CYCLE_UNKNOWN)
@@ -65,12 +54,18 @@ static bool offer(cycles *c, const cycle_op *op)
     c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(cycle - c->raster);
     c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(open - cycle);
     c->loading = false;
-    keep(c, segment_ring_push(&c->door, (segment){.run = run_of(c, op),
-                                                  .killed = op->killed,
-                                                  .slice_start = op->slice_start && !c->op_done,
-                                                  .offset = c->op_done,
-                                                  .count = (int32_t)length,
-                                                  .cycle = open}));
+    segment *s = segment_ring_add(&c->door);
+    keep(c, s != NULL);
+    if (!s)
+        return false;
+    *s = (segment){.px = op->px,
+                   .killed = op->killed,
+                   .slice_start = op->slice_start && !c->op_done,
+                   .offset = c->op_done,
+                   .count = (int32_t)length,
+                   .cycle = open};
+    if (op->detail >= 0)
+        s->run = c->details[op->detail];
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
@@ -105,7 +100,7 @@ static bool glide(cycles *c, const cycle_op *op)
     if (!c->glides || c->door.count || c->miss != MISS_NONE || op->killed)
         return false;
     bool miss = op->miss && c->op_done == 0;
-    int64_t count = miss ? 1 : op->count - c->op_done, ready = c->raster, length;
+    int64_t count = miss ? 1 : op->px.count - c->op_done, ready = c->raster, length;
     if (miss && !c->eager && c->visit_fragments - c->visit_accepted <= c->fifo + 1)
         return false;
     if (c->loading) {
@@ -115,9 +110,9 @@ static bool glide(cycles *c, const cycle_op *op)
             return false;
         ready = max64(ready, loaded + 1);
     }
-    int32_t x = op->x + c->op_done;
+    int32_t x = op->px.x + c->op_done;
     bool slice_start = c->slice_starts || (op->slice_start && c->op_done == 0);
-    if (may_conflict(c, x, op->y, slice_start, count))
+    if (may_conflict(c, x, op->px.y, slice_start, count))
         return false;
     int64_t head = max64(ready + c->latency, c->last_pop + 1), cycle = max64(head, c->cache_free);
     int64_t accept = ready + count - 1, room = c->accepted + count - 1 - c->fifo;
@@ -137,16 +132,16 @@ static bool glide(cycles *c, const cycle_op *op)
     c->tag_count += count;
     c->op_done += (int32_t)count;
     if (!miss) {
-        read_pixels(c, x, op->y, slice_start, count, cycle);
+        read_pixels(c, &op->px, c->op_done - (int32_t)count, slice_start, (int32_t)count, cycle);
         return true;
     }
     const cycle_run *run = &c->details[op->detail];
     if (!c->write_pending && (run->reads || !run->evicts)) {
-        cycles_miss_at_once(c, run, slice_start, cycle);
+        cycles_miss_at_once(c, run, &op->px, slice_start, cycle);
         return true;
     }
     cycles_begin_miss(c, cycle);
-    while (!cycles_resolve_miss(c, run, slice_start) && cycles_grant(c))
+    while (!cycles_resolve_miss(c, run, &op->px, slice_start) && cycles_grant(c))
         ;
     return true;
 }
@@ -160,13 +155,13 @@ bool cycles_advance_raster(cycles *c)
         if (op->kind == OP_SLICE) {
             take_slice(c);
         } else if (op->kind == OP_ROWS) {
-            c->raster += op->count;
-            c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)op->count;
+            c->raster += op->px.count;
+            c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)op->px.count;
         } else if (!glide(c, op) && !offer(c, op)) {
             return moved;
         }
         moved = true;
-        if (op->kind == OP_RUN && c->op_done < op->count)
+        if (op->kind == OP_RUN && c->op_done < op->px.count)
             continue;
         c->op_done = 0;
         c->op_next++;

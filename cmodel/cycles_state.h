@@ -12,11 +12,18 @@ enum { VISITS = 8 };
 
 typedef enum op_kind { OP_SLICE, OP_ROWS, OP_RUN } op_kind;
 
+/* Pixels of one row, or of several as one. Then the first row and the last are known: what lies between is longer than
+ * a blend, and far enough from both ends of a slice for any hazard. */
+typedef struct pixel_rows {
+    int32_t count;
+    int32_t x, y, first;          /* the first row: so many from (x, y) on */
+    int32_t last_x, last_y, last; /* the last row, if it is another; last 0: it is not */
+} pixel_rows;
+
 /* What the rasterizer does next. Most runs hit, and of those no more than their pixels matters. */
 typedef struct cycle_op {
     op_kind kind;
-    int32_t count; /* rows, or fragments */
-    int32_t x, y;
+    pixel_rows px;    /* a run's; .count alone: rows */
     bool slice_start; /* a run: the first of its slice */
     bool killed, miss;
     int32_t detail; /* its number among details; -1: none */
@@ -24,7 +31,8 @@ typedef struct cycle_op {
 
 /* `count` fragments of a run from its fragment `offset` on, fragment n of them at `cycle` + n. */
 typedef struct segment {
-    cycle_run run;
+    pixel_rows px;
+    cycle_run run; /* what is known of it beyond its pixels */
     bool killed;
     bool slice_start;
     int32_t offset, count;
@@ -78,9 +86,10 @@ struct cycles {
 
     cycle_op *ops; /* of the visit worked on; unless eager, all of them, once the next visit is known */
     size_t op_count, op_room, op_next;
-    int32_t op_done;    /* fragments of ops[op_next] accepted */
-    bool new_slice;     /* the next run added begins a slice */
-    cycle_run *details; /* of its runs: those that missed, or all when writing through */
+    int32_t op_done;     /* fragments of ops[op_next] accepted */
+    bool new_slice;      /* the next run added begins a slice */
+    int64_t slice_added; /* fragments of the slice in the ops */
+    cycle_run *details;  /* of its runs: those that missed, or all when writing through */
     size_t detail_count, detail_room;
     visit_state visits[VISITS];
     int64_t announced, current;              /* numbers of visits; -1: none */
@@ -166,14 +175,21 @@ static inline int64_t stretch_cycle(stretch_ring *r, int64_t number, int64_t *le
     return s->cycle + (number - s->first);
 }
 
-/* `count` pixels from (x, y) on read from `cycle` on; the blender writes them blend_cycles later. */
-static inline void read_pixels(cycles *c, int32_t x, int32_t y, bool slice_start, int64_t count, int64_t cycle)
+/* `count` pixels from number `offset` on read from `cycle` on; the blender writes them blend_cycles later. */
+static inline void read_pixels(cycles *c, const pixel_rows *px, int32_t offset, bool slice_start, int32_t count,
+                               int64_t cycle)
 {
+    int32_t end = offset + count, last = px->count - px->last, from = offset > last ? offset : last;
+    recent *r = &c->recents[c->recent_count++ & c->recent_mask];
+    *r = (recent){px->x + offset, px->y, count, cycle};
+    if (px->last && end > last)
+        *r = (recent){px->last_x + from - last, px->last_y, end - from, cycle + from - offset};
+    else if (px->last && end > px->first)
+        r->y = -1; /* between the first row and the last */
     if (slice_start)
         c->slice_reads = 0;
     if (c->nonblocking)
         stretch_add(c, &c->reads, c->read_count, count, cycle);
-    c->recents[c->recent_count++ & c->recent_mask] = (recent){x, y, count, cycle};
     c->read_count += count;
     c->slice_reads += count;
     c->last_read = cycle + count - 1;
@@ -207,7 +223,7 @@ bool cycles_advance_data(cycles *c);
 
 /* A blocking cache's miss, looked up in `cycle`, and its way to the end; false when that depends on the bus. */
 void cycles_begin_miss(cycles *c, int64_t cycle);
-bool cycles_resolve_miss(cycles *c, const cycle_run *run, bool slice_start);
+bool cycles_resolve_miss(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start);
 
 /* A dirty line moves to the write buffer from cycle `earliest` on, once blends are over and the buffer is free. False
  * when it is unknown when that is. */
@@ -227,6 +243,6 @@ void cycles_settle_loads(cycles *c);
 void cycles_finish_load(cycles *c);
 
 /* A blocking miss looked up in `cycle`, with no other fill or write under way, to its end. */
-void cycles_miss_at_once(cycles *c, const cycle_run *run, bool slice_start, int64_t cycle);
+void cycles_miss_at_once(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start, int64_t cycle);
 
 #endif
