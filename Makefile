@@ -31,7 +31,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr bench bench-model contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model contact-sheet fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -49,18 +49,33 @@ demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in bu
 tests: $(TESTS) $(BENCHES)
 
 check: ## run every test; the last line is `N passed, N failed`
-	@scripts/deps check
+	@scripts/deps check fuzz
 	@$(MAKE) -s $(PARALLEL) all tests
 	@scripts/check $(BUILD)
 
-check-long: ## the same, with 10,000 random cases
-	@scripts/deps check
+check-long: ## the same, with 10,000 random cases, 20,000 for the cycles
+	@scripts/deps check fuzz
 	@$(MAKE) -s $(PARALLEL) all tests
 	@scripts/check --long $(BUILD)
+
+fuzz: ## fuzz every parser for an hour each, two at a time
+	@scripts/deps fuzz
+	@scripts/fuzz 3600
+
+contact-sheet: $(BUILD)/vodr ## draw every real volume at hand into build/contact-sheet/
+	@scripts/contact-sheet $(BUILD)
+
+bench-model: $(BUILD)/vodr ## measure the model beside a software rasterizer, and write its table in the README again
+	@scripts/tables $(BUILD) model
+	@cat $(BUILD)/tables/model
 
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
 	@$(BUILD)/bench/table_vodr
+
+table-cycles: ## cycles a frame, divided or not; what counting them costs
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
+	@$(BUILD)/bench/table_cycles
 
 lint: ## check formatting, shell scripts, layers, links and docs/parameters.md
 	@scripts/deps lint
@@ -77,12 +92,13 @@ format: ## lay the C sources out by .clang-format
 
 docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views tour
+	@scripts/tables $(BUILD) size table1 views cycles tour
 
-bench: ## measure the speed, and write its table in the README again
-	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed
-	@scripts/tables $(BUILD) speed
+bench: ## measure the speed, and write its tables in the pages again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
+	@scripts/tables $(BUILD) speed cycle-speed
 
 $(BUILD)/generate: hw/generate.c
 	@mkdir -p $(@D)

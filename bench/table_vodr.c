@@ -6,29 +6,21 @@
  * without division (4096*256), once a layer of bricks with it (4096*8, half of that for 32 pixels). In tile order a
  * line misses once a frame, at every view: the misses are the touched lines, counted here from the positions alone. */
 #include <inttypes.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "cube.h"
+#include "jobs.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-enum { VIEWS = 4, MAX_THREADS = 64, MAX_SETTINGS = 3 };
+static const char program[] = "table_vodr";
+
+enum { VIEWS = 4 };
 
 static const double view_angles_deg[VIEWS][2] = {{0, 0}, {11, 17}, {30, 30}, {35, 45}};
 
-/* A row of a table: a named machine with settings on top. */
-typedef struct row {
-    const char *label, *machine;
-    const char *settings[MAX_SETTINGS][2];
-} row;
-
 typedef struct paper_row {
-    row ours;
+    job_machine ours;
     const char *paper;                  /* its hits, misses, MB and write-backs, as cells */
     uint64_t misses, bytes, writebacks; /* what ours must be */
 } paper_row;
@@ -51,7 +43,7 @@ static const paper_row paper_rows[] = {
      16384},
 };
 
-static const row view_rows[] = {
+static const job_machine view_rows[] = {
     {"undivided, 16x1", "paper-general", {{0}}},
     {"undivided, 4x4", "paper-general", {{"line_px", "4x4"}}},
     {"layer, 16x1 (paper-16)", "paper-16", {{0}}},
@@ -65,75 +57,6 @@ static const row view_rows[] = {
     {"tile, 16x1", "paper-16", {{"traversal", "tile"}}},
     {"tile, 4x4", "paper-16", {{"traversal", "tile"}, {"line_px", "4x4"}}},
 };
-
-/* A frame to draw, and what came of it. */
-typedef struct job {
-    const row *row;
-    int view;
-    vodr_machine machine;
-    vodr_counters counters;
-    bool drawn;
-} job;
-
-typedef struct work {
-    const cube *cube;
-    vodr_view views[VIEWS];
-    job *jobs;
-    size_t count;
-    atomic_size_t next;
-} work;
-
-static bool row_machine(const row *r, vodr_machine *machine)
-{
-    vodr_error error;
-    vodr_status status = vodr_machine_named(r->machine, machine, &error);
-    for (int i = 0; i < MAX_SETTINGS && r->settings[i][0] && status == VODR_OK; i++)
-        status = vodr_machine_set(machine, r->settings[i][0], r->settings[i][1], &error);
-    if (status != VODR_OK)
-        fprintf(stderr, "table_vodr: %s: %s\n", r->label, error.text);
-    return status == VODR_OK;
-}
-
-static void draw(const work *w, job *j)
-{
-    const vodr_options options = {.threads = 1};
-    vodr_frame frame;
-    vodr_error error;
-    j->drawn = row_machine(j->row, &j->machine);
-    if (!j->drawn)
-        return;
-    vodr_status status = vodr_render(&j->machine, &w->cube->volume, &w->cube->table, &w->views[j->view], &options,
-                                     &frame, &j->counters, &error);
-    j->drawn = status == VODR_OK;
-    if (!j->drawn)
-        fprintf(stderr, "table_vodr: %s: %s\n", j->row->label, error.text);
-    vodr_frame_free(&frame);
-}
-
-static void *draw_jobs(void *argument)
-{
-    work *w = argument;
-    for (size_t i = atomic_fetch_add(&w->next, 1); i < w->count; i = atomic_fetch_add(&w->next, 1))
-        draw(w, &w->jobs[i]);
-    return NULL;
-}
-
-/* Draws all jobs, one thread a core. */
-static bool draw_all(work *w)
-{
-    pthread_t threads[MAX_THREADS];
-    long cores = sysconf(_SC_NPROCESSORS_ONLN), started = 0;
-    atomic_store(&w->next, 0);
-    while (started + 1 < cores && started < MAX_THREADS && pthread_create(&threads[started], NULL, draw_jobs, w) == 0)
-        started++;
-    draw_jobs(w);
-    for (long i = 0; i < started; i++)
-        pthread_join(threads[i], NULL);
-    bool drawn = true;
-    for (size_t i = 0; i < w->count; i++)
-        drawn &= w->jobs[i].drawn;
-    return drawn;
-}
 
 static bool sample_inside(const vodr_view *v, int32_t x, int32_t y, int32_t k)
 {
@@ -162,24 +85,10 @@ static uint64_t touched_lines(const vodr_view *v, int32_t w, int32_t h)
     return count;
 }
 
-/* 1048576 as "1,048,576". */
-static const char *commas(uint64_t number, char text[32])
-{
-    char digits[24];
-    int n = snprintf(digits, sizeof digits, "%" PRIu64, number), length = 0;
-    for (int i = 0; i < n; i++) {
-        if (i && (n - i) % 3 == 0)
-            text[length++] = ',';
-        text[length++] = digits[i];
-    }
-    text[length] = '\0';
-    return text;
-}
-
 static bool must_be(const char *label, const char *what, uint64_t is, uint64_t must)
 {
     if (is != must)
-        fprintf(stderr, "table_vodr: %s: %s is %" PRIu64 ", must be %" PRIu64 "\n", label, what, is, must);
+        fprintf(stderr, "%s: %s: %s is %" PRIu64 ", must be %" PRIu64 "\n", program, label, what, is, must);
     return is == must;
 }
 
@@ -194,27 +103,25 @@ static bool check_paper_row(const paper_row *r, const vodr_counters *c)
     return good & must_be(r->ours.label, "writebacks", c->writebacks, r->writebacks);
 }
 
-static bool print_table1(work *w)
+static bool print_table1(const cube *c, const vodr_view views[VIEWS])
 {
     job jobs[COUNT(paper_rows)] = {{0}};
     for (size_t i = 0; i < COUNT(jobs); i++)
-        jobs[i].row = &paper_rows[i].ours;
-    w->jobs = jobs;
-    w->count = COUNT(jobs);
-    if (!draw_all(w))
+        jobs[i] = (job){.row = &paper_rows[i].ours, .view = &views[0]};
+    if (!jobs_draw(program, c, jobs, COUNT(jobs), false))
         return false;
     bool good = true;
     puts("|                |       | fragments  | hits       | misses    | bytes read | write-backs |\n"
          "| -------------- | ----- | ---------- | ---------- | --------- | ---------- | ----------- |");
     for (size_t i = 0; i < COUNT(jobs); i++) {
         const paper_row *r = &paper_rows[i];
-        const vodr_counters *c = &jobs[i].counters;
+        const vodr_counters *n = &jobs[i].counters;
         char text[5][32];
         printf("| %-14s | paper | %s           |\n", r->ours.label, r->paper);
-        printf("| %-14s | vodr  | %-10s | %-10s | %-9s | %-10s | %-11s |\n", "", commas(c->fragments, text[0]),
-               commas(c->hits, text[1]), commas(c->misses, text[2]), commas(c->fb_read_bytes, text[3]),
-               commas(c->writebacks, text[4]));
-        good &= check_paper_row(r, c);
+        printf("| %-14s | vodr  | %-10s | %-10s | %-9s | %-10s | %-11s |\n", "", job_commas(n->fragments, text[0]),
+               job_commas(n->hits, text[1]), job_commas(n->misses, text[2]), job_commas(n->fb_read_bytes, text[3]),
+               job_commas(n->writebacks, text[4]));
+        good &= check_paper_row(r, n);
     }
     return good;
 }
@@ -222,10 +129,10 @@ static bool print_table1(work *w)
 static void print_cell(uint64_t misses, uint64_t accesses)
 {
     char text[32];
-    printf(" %9s (%5.2f %%) |", commas(misses, text), 100 - 100.0 * (double)misses / (double)accesses);
+    printf(" %9s (%5.2f %%) |", job_commas(misses, text), 100 - 100.0 * (double)misses / (double)accesses);
 }
 
-static bool print_view_row(const work *w, const job *jobs)
+static bool print_view_row(const job *jobs)
 {
     bool good = true;
     printf("| %-32s |", jobs[0].row->label);
@@ -235,29 +142,27 @@ static bool print_view_row(const work *w, const job *jobs)
         print_cell(c->misses, c->hits + c->misses);
         if (m->traversal == VODR_TRAVERSAL_TILE)
             good &= must_be(jobs[v].row->label, "misses", c->misses,
-                            touched_lines(&w->views[v], m->line_px.width, m->line_px.height));
+                            touched_lines(jobs[v].view, m->line_px.width, m->line_px.height));
     }
     puts("");
     return good;
 }
 
-static void print_touched_row(const work *w, const char *label, int32_t width_px, int32_t height_px,
+static void print_touched_row(const vodr_view views[VIEWS], const char *label, int32_t width_px, int32_t height_px,
                               const uint64_t accesses[VIEWS])
 {
     printf("| %-32s |", label);
     for (int v = 0; v < VIEWS; v++)
-        print_cell(touched_lines(&w->views[v], width_px, height_px), accesses[v]);
+        print_cell(touched_lines(&views[v], width_px, height_px), accesses[v]);
     puts("");
 }
 
-static bool print_views(work *w)
+static bool print_views(const cube *c, const vodr_view views[VIEWS])
 {
     job jobs[COUNT(view_rows) * VIEWS] = {{0}};
     for (size_t i = 0; i < COUNT(jobs); i++)
-        jobs[i] = (job){.row = &view_rows[i / VIEWS], .view = (int)(i % VIEWS)};
-    w->jobs = jobs;
-    w->count = COUNT(jobs);
-    if (!draw_all(w))
+        jobs[i] = (job){.row = &view_rows[i / VIEWS], .view = &views[i % VIEWS]};
+    if (!jobs_draw(program, c, jobs, COUNT(jobs), false))
         return false;
     bool good = true;
     uint64_t accesses[VIEWS];
@@ -273,16 +178,16 @@ static bool print_views(work *w)
         printf(" ------------------- |");
     puts("");
     for (size_t i = 0; i < COUNT(view_rows); i++)
-        good &= print_view_row(w, jobs + i * VIEWS);
-    print_touched_row(w, "the least: touched 16x1 lines", 16, 1, accesses);
-    print_touched_row(w, "the least: touched 4x4 lines", 4, 4, accesses);
+        good &= print_view_row(jobs + i * VIEWS);
+    print_touched_row(views, "the least: touched 16x1 lines", 16, 1, accesses);
+    print_touched_row(views, "the least: touched 4x4 lines", 4, 4, accesses);
     return good;
 }
 
-static bool make_views(work *w, host_error *error)
+static bool make_views(vodr_view views[VIEWS], host_error *error)
 {
     for (int v = 0; v < VIEWS; v++)
-        if (cube_view(view_angles_deg[v][0], view_angles_deg[v][1], &w->views[v], error) != HOST_OK)
+        if (cube_view(view_angles_deg[v][0], view_angles_deg[v][1], &views[v], error) != HOST_OK)
             return false;
     return true;
 }
@@ -290,15 +195,15 @@ static bool make_views(work *w, host_error *error)
 int main(int argc, char **argv)
 {
     const char *which = argc == 2 ? argv[1] : "";
-    bool table1 = argc == 1 || strcmp(which, "table1") == 0, views = argc == 1 || strcmp(which, "views") == 0;
-    if (!table1 && !views) {
+    bool table1 = argc == 1 || strcmp(which, "table1") == 0, others = argc == 1 || strcmp(which, "views") == 0;
+    if (!table1 && !others) {
         fputs("usage: table_vodr [table1|views]\n", stderr);
         return 2;
     }
     cube c;
-    work w = {.cube = &c};
+    vodr_view views[VIEWS];
     host_error error;
-    if (cube_make(&c, &error) != HOST_OK || !make_views(&w, &error)) {
+    if (cube_make(&c, &error) != HOST_OK || !make_views(views, &error)) {
         fprintf(stderr, "table_vodr: %s\n", error.text);
         return 3;
     }
@@ -306,12 +211,12 @@ int main(int argc, char **argv)
     if (argc == 1)
         puts("Table 1: 256^3 voxels, 256x256 pixels, 256 slices, view 0,0, cache 4 KB, 4 ways\n");
     if (table1)
-        good &= print_table1(&w);
+        good &= print_table1(&c, views);
     if (argc == 1)
         puts("\nWhat the paper leaves out: misses and hit rate of the same machine at other views, with other frame\n"
              "buffers, lines and orders of bricks\n");
-    if (views)
-        good &= print_views(&w);
+    if (others)
+        good &= print_views(&c, views);
     cube_free(&c);
     return good ? 0 : 1;
 }

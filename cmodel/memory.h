@@ -1,4 +1,4 @@
-/* memory.h - what lies behind the memory bus: a fixed latency, or open-page DRAM (docs/architecture.md, "Memory"). One
+/* memory.h - what lies behind the memory bus: a fixed latency, or open-page DRAM (docs/timing.md, section 8). One
  * piece of C for every model of time: whoever arbitrates calls memory_grant() for each transaction, in the order of
  * grants. */
 #ifndef VODR_MEMORY_H

@@ -100,9 +100,10 @@ typedef struct vodr_table {
 #define VODR_FOOTPRINT_BITS 20 /* fraction bits of footprint */
 
 /* Where pixel (x, y) of slice k samples the volume, in voxels, component by component (docs/architecture.md,
- * "Positions"): parallel     base + k*step_s + x*step_u + y*step_v perspective  base + ((z*(step_s + x*step_u +
- * y*step_v)) >> shift),  z = (depth_first + k*depth_step) >> 16 Slice 0 is the farthest. Voxel i covers [i, i+1) and
- * has its centre at i + 0.5. Row 0 is the top of the frame. */
+ * "Positions"). Slice 0 is the farthest, row 0 the top of the frame; voxel i covers [i, i+1) and has its centre at i +
+ * 0.5. */
+/* parallel: base + k*step_s + x*step_u + y*step_v */
+/* perspective: base + ((z*(step_s + x*step_u + y*step_v)) >> shift) with z = (depth_first + k*depth_step) >> 16 */
 typedef struct vodr_view {
     int32_t width_px, height_px; /* 1 to VODR_MAX_SIZE_PX */
     int32_t slices;              /* 1 to VODR_MAX_SLICES */
@@ -152,7 +153,7 @@ typedef struct vodr_block_cycles {
 } vodr_block_cycles;
 
 typedef struct vodr_cycles {
-    uint64_t total; /* 0: not asked for */
+    uint64_t total; /* 0 when not asked for, or when there was nothing to look at */
     vodr_block_cycles blocks[VODR_BLOCK_COUNT];
     uint64_t stalls[VODR_STALL_COUNT];
 } vodr_cycles;

@@ -142,6 +142,7 @@ static bool perspective_view(const camera *c, const placement *p, const basis *b
     for (int a = 0; a < 3; a++) {
         eye[a] += p->v->dims_vox[a] * 0.5;
         reach = fmax(reach, fmax(fabs(eye[a]), fabs(p->v->dims_vox[a] - eye[a])));
+        reach = fmax(reach, fmax(fabs(u[a]), fabs(v[a])) * far); /* more than the corners' on a frame of one pixel */
         for (int i = 0; i < 4; i++)
             reach = fmax(reach, fabs(corner[i][a]) * far);
     }
@@ -242,6 +243,7 @@ host_status camera_view(const camera *c, const volume *v, vodr_view *view, doubl
     view->footprint = footprint(view);
     vodr_error reason;
     if (vodr_view_check(view, v->dims_vox, &reason) != VODR_OK)
-        return host_fail(error, HOST_BAD_INPUT, "%s", reason.text);
+        return host_fail(error, HOST_BAD_INPUT, "at zoom %g and %" PRId32 "x%" PRId32 " pixels %s", c->zoom,
+                         view->width_px, view->height_px, reason.text);
     return HOST_OK;
 }

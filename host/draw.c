@@ -65,7 +65,11 @@ static host_status draw_once(const scene *s, const vodr_machine *machine, const 
 host_status draw(const scene *s, const vodr_machine *machine, const draw_options *how, result *r, host_error *error)
 {
     progress_line line = {.label = how->label, .begin_s = now_s(), .percent = -1};
-    vodr_options options = {.threads = how->threads, .path = how->path, .simd = how->simd, .observer = how->observer};
+    vodr_options options = {.threads = how->threads,
+                            .path = how->path,
+                            .simd = how->simd,
+                            .cycles = how->cycles,
+                            .observer = how->observer};
     if (isatty(STDERR_FILENO)) {
         options.progress = show_progress;
         options.progress_context = &line;

@@ -21,7 +21,8 @@ typedef struct draw_options {
     int32_t threads;   /* 0 = all cores */
     vodr_path path;
     vodr_simd simd;
-    int repeat; /* at least 1; an observer is told of every one */
+    bool cycles; /* count them */
+    int repeat;  /* at least 1; an observer is told of every one */
     const vodr_observer *observer;
 } draw_options;
 

@@ -29,7 +29,10 @@ static void print_text(const volume *v, const histogram *h, const suggestion *s)
     printf("range        %.17g to %.17g%s\n", v->min, v->max, volume_is_ct(v) ? " (CT, Hounsfield units)" : "");
     printf("nonfinite    %" PRIu64 "%s\n", v->nonfinite,
            v->nonfinite ? " (NaN or infinite: drawn as the minimum)" : "");
-    printf("suggested    --tf %s --window %.9g:%.9g\n\n", s->transfer, s->lo, s->hi);
+    printf("suggested    --tf %s", s->transfer);
+    if (s->lo < s->hi) /* all voxels may be alike */
+        printf(" --window %.9g:%.9g", s->lo, s->hi);
+    fputs("\n\n", stdout);
     double width = (v->max - v->min) / PARTS, largest = 0;
     for (int i = 0; i < PARTS; i++)
         largest = share(h, i) > largest ? share(h, i) : largest;

@@ -108,6 +108,16 @@ host_status output_check(const char *path, host_error *error)
     return access(path, W_OK) == 0 ? HOST_OK : fail(path, errno, error);
 }
 
+host_status output_spare(const char *path, const char *input, host_error *error)
+{
+    struct stat out, in;
+    if (!input || stat(path, &out) != 0 || stat(input, &in) != 0 || !S_ISREG(in.st_mode))
+        return HOST_OK;
+    if (out.st_dev != in.st_dev || out.st_ino != in.st_ino)
+        return HOST_OK;
+    return host_fail(error, HOST_BAD_INPUT, "'%s' is read by this command and cannot be its output too", path);
+}
+
 host_status output_close(output *o, host_error *error)
 {
     bool failed = ferror(o->file) != 0;

@@ -19,6 +19,10 @@ typedef struct output {
 /* Whether `path` can be written, before long work; leaves nothing behind. HOST_ENVIRONMENT when not. */
 host_status output_check(const char *path, host_error *error);
 
+/* HOST_BAD_INPUT when `path` is the regular file `input`, which a command reads: it would be replaced. NULL, or a name
+ * that is no file, is no input. */
+host_status output_spare(const char *path, const char *input, host_error *error);
+
 /* Whether writing to `path` writes to the program's standard output. */
 bool output_is_stdout(const char *path);
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "cycle_stats.h"
 #include "draw.h"
 #include "image.h"
 #include "registers.h"
@@ -52,7 +53,7 @@ static const option_table table = {"Output (none is required):", rows, sizeof ro
 
 /* ---- output ---- */
 
-static host_status check_outputs(const render_options *options, host_error *error)
+static host_status check_outputs(const char *input, const render_options *options, host_error *error)
 {
     for (int i = 0; i < OUTPUTS; i++) {
         for (int j = 0; options->path[i] && j < i; j++)
@@ -60,7 +61,9 @@ static host_status check_outputs(const render_options *options, host_error *erro
                 strncmp(options->path[i], "/dev/", 5) != 0)
                 return host_fail(error, HOST_BAD_INPUT, "--%s and --%s both name '%s'", output_option[j],
                                  output_option[i], options->path[i]);
-        host_status status = options->path[i] ? output_check(options->path[i], error) : HOST_OK;
+        host_status status = HOST_OK;
+        if (options->path[i])
+            status = view_options_output(&options->view, input, options->path[i], error);
         if (status != HOST_OK)
             return status;
     }
@@ -113,6 +116,16 @@ static void print_count(const char *name, uint64_t value, const char *after)
     printf("%-18s %18s%s\n", name, grouped, after);
 }
 
+static void print_cycles(const vodr_counters *c)
+{
+    char each[48] = "", bottleneck[192];
+    if (c->fragments)
+        snprintf(each, sizeof each, "  (%.3f a fragment)", (double)c->cycles.total / (double)c->fragments);
+    print_count("cycles", c->cycles.total, each);
+    cycle_stats_bottleneck(&c->cycles, bottleneck, sizeof bottleneck);
+    printf("bottleneck         %s\n", bottleneck);
+}
+
 static void print_summary(const render_options *options, const scene *s, const result *r)
 {
     const vodr_counters *c = &r->counters;
@@ -133,6 +146,8 @@ static void print_summary(const render_options *options, const scene *s, const r
     print_count("texture load", c->texture_load_bytes, " bytes");
     print_count("bricks", c->bricks, "");
     print_count("brick visits", c->brick_visits, "");
+    if (options->view.cycles)
+        print_cycles(c);
     printf("time               %.6f s, %.1f million fragments a second\n", r->wall_s, stats_fragments_per_s(r) / 1e6);
     printf("frame_sha256       %s\n", r->frame_sha256);
     for (int i = 0; i < OUTPUTS; i++)
@@ -154,9 +169,13 @@ static host_status render(const char *path, const render_options *options, host_
     scene s;
     result r = {.repeat = 0};
     const view_options *v = &options->view;
-    draw_options how = {
-        .label = "drawing", .threads = v->threads, .path = v->path, .simd = v->simd, .repeat = options->repeat};
-    host_status status = check_outputs(options, error);
+    draw_options how = {.label = "drawing",
+                        .threads = v->threads,
+                        .path = v->path,
+                        .simd = v->simd,
+                        .cycles = v->cycles,
+                        .repeat = options->repeat};
+    host_status status = check_outputs(path, options, error);
     if (status == HOST_OK)
         status = scene_open(path, &options->view, &s, error);
     if (status != HOST_OK)

@@ -79,8 +79,13 @@ static host_status peer_machine(const char *name, const vodr_machine *picture, v
 static draw_options drawing(const report_options *options, const char *label, const vodr_observer *observer)
 {
     const view_options *v = &options->view;
-    return (draw_options){
-        .label = label, .threads = v->threads, .path = v->path, .simd = v->simd, .repeat = 1, .observer = observer};
+    return (draw_options){.label = label,
+                          .threads = v->threads,
+                          .path = v->path,
+                          .simd = v->simd,
+                          .cycles = true,
+                          .repeat = 1,
+                          .observer = observer};
 }
 
 static host_status draw_peer(const scene *s, const report_options *options, const result *own, report_peer *peer,
@@ -138,9 +143,12 @@ static host_status make_report(const char *path, const report_options *options, 
 {
     if (!options->path)
         return host_fail(error, HOST_BAD_INPUT, "report needs --output (-o) OUT.html");
+    if (options->view.path == VODR_PATH_CLOCKED)
+        return host_fail(error, HOST_BAD_INPUT,
+                         "report cannot take --path clocked, which tells of no visit and no miss: fast and blocks do");
     scene s;
     report_trace trace;
-    host_status status = output_check(options->path, error);
+    host_status status = view_options_output(&options->view, path, options->path, error);
     if (status == HOST_OK)
         status = scene_open(path, &options->view, &s, error);
     if (status != HOST_OK)
@@ -157,6 +165,7 @@ static host_status make_report(const char *path, const report_options *options, 
 static host_status run(int argc, char **argv, host_error *error)
 {
     report_options options = {.view = view_options_default()};
+    options.view.cycles = true;
     void *const targets[] = {&options, &options.view, &options.view, &options.view.volume, &options.view};
     const char *operands[OPTION_OPERANDS];
     bool help;

@@ -53,8 +53,9 @@ static json_t *peers_array(const report_peer *peers)
     json_t *array = json_array();
     for (int i = 0; i < REPORT_PEERS; i++)
         json_array_append_new(array,
-                              json_pack("{s:s, s:b, s:o}", "machine", peers[i].machine, "same_frame",
-                                        (int)peers[i].same_frame, "counters", stats_counters(&peers[i].counters)));
+                              json_pack("{s:s, s:b, s:o, s:o}", "machine", peers[i].machine, "same_frame",
+                                        (int)peers[i].same_frame, "cycles", json_count(peers[i].counters.cycles.total),
+                                        "counters", stats_counters(&peers[i].counters)));
     return array;
 }
 

@@ -5,7 +5,6 @@
  * JSON by write_json(), in the script as text nodes only. */
 #include "report_page.h"
 
-#include <errno.h>
 #include <openssl/evp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +40,9 @@ static const char after_picture[] =
     "<button type='button' id='next' aria-label='One step on'>&#8250;</button></div>\n"
     "<dl id='visit'></dl><h3>Misses as the frame is drawn</h3><div id='curve'></div><p id='order-note'></p></div>\n"
     "</div></section>\n"
+    "<section id='cycles'><h2>Cycles</h2><p id='cycles-note'></p><div class='pair'>"
+    "<div id='blocks'><h3>The blocks, with their busy share</h3></div>"
+    "<div id='stalls'><h3>What they wait for</h3></div></div></section>\n"
     "<section><h2>Frame-buffer traffic beside the paper's machines</h2><p id='traffic-note'></p>\n"
     "<div id='bars'></div><table id='runs'></table>\n"
     "<h3>For reference: the paper's Table 1</h3>\n"
@@ -87,10 +89,11 @@ static host_status write_json(output *o, const char *id, json_t *root, size_t fl
         return host_fail(error, HOST_ENVIRONMENT, "no memory to write '%s'", o->path);
     fprintf(o->file, "<script type='application/json' id='%s'>\n", id);
     int failed = json_dump_callback(root, write_piece, o->file, flags | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(17));
-    int code = errno;
     json_decref(root);
     fputs("\n</script>\n", o->file);
-    return failed ? host_fail(error, HOST_ENVIRONMENT, "cannot write '%s': %s", o->path, strerror(code)) : HOST_OK;
+    /* A failed write is told by output_close(). */
+    return failed && !ferror(o->file) ? host_fail(error, HOST_ENVIRONMENT, "no memory to write '%s'", o->path)
+                                      : HOST_OK;
 }
 
 static void write_base64(FILE *file, const unsigned char *bytes, size_t count)

@@ -1,6 +1,7 @@
 /* stats.c - the statistics of a frame as JSON (--stats). */
 #include "stats.h"
 
+#include "cycle_stats.h"
 #include "json.h"
 
 double stats_hit_rate(const vodr_counters *c)
@@ -71,9 +72,15 @@ json_t *stats_json(const scene *s, const view_options *options, const result *r)
                              json_machine(s->machine_name, &s->machine), "volume", json_volume(s, options), "view",
                              view_object(s));
     json_t *counters = stats_counters(&r->counters);
-    json_t *rest = json_pack("{s:i, s:n, s:n, s:n, s:s, s:i, s:i, s:f, s:f}", "slices", (int)s->view.slices, "cycles",
-                             "stalls", "bottleneck", "frame_sha256", r->frame_sha256, "threads", (int)options->threads,
-                             "repeat", r->repeat, "wall_s", r->wall_s, "fragments_per_s", stats_fragments_per_s(r));
+    const vodr_cycles *cycles = options->cycles ? &r->counters.cycles : NULL;
+    char bottleneck[192];
+    if (cycles)
+        cycle_stats_bottleneck(cycles, bottleneck, sizeof bottleneck);
+    json_t *rest = json_pack(
+        "{s:i, s:o, s:o, s:s?, s:s, s:i, s:i, s:f, s:f}", "slices", (int)s->view.slices, "cycles",
+        cycles ? cycle_stats_blocks(cycles) : json_null(), "stalls", cycles ? cycle_stats_stalls(cycles) : json_null(),
+        "bottleneck", cycles ? bottleneck : NULL, "frame_sha256", r->frame_sha256, "threads", (int)options->threads,
+        "repeat", r->repeat, "wall_s", r->wall_s, "fragments_per_s", stats_fragments_per_s(r));
     if (json_object_update(root, counters) != 0 || json_object_update(root, rest) != 0) {
         json_decref(root);
         root = NULL;

@@ -1,10 +1,12 @@
 /* view_options.c - the options that all drawing subcommands share: volume, view, machine, picture. */
 #include "view_options.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "output.h"
 #include "text.h"
 #include "volume_options.h"
 
@@ -14,8 +16,10 @@ static host_status set_view(void *target, const option *o, const char *value, ho
 {
     camera *c = &((view_options *)target)->camera;
     double degrees[3] = {0};
-    if (!text_numbers(value, ',', 2, 3, degrees))
-        return option_refuse(o, value, "AZ,EL or AZ,EL,ROLL in degrees", error);
+    if (!text_numbers(value, ',', 2, 3, degrees) || fabs(degrees[0]) > 36000 || fabs(degrees[1]) > 90 ||
+        fabs(degrees[2]) > 36000)
+        return option_refuse(
+            o, value, "AZ,EL or AZ,EL,ROLL in degrees, EL from -90 to 90, the others from -36000 to 36000", error);
     c->azimuth_deg = degrees[0];
     c->elevation_deg = degrees[1];
     c->roll_deg = degrees[2];
@@ -99,11 +103,19 @@ static int find_word(const char *value, const char *const *words, int count)
 
 static host_status set_path(void *target, const option *o, const char *value, host_error *error)
 {
-    static const char *const words[] = {[VODR_PATH_FAST] = "fast", [VODR_PATH_BLOCKS] = "blocks"};
+    static const char *const words[] = {
+        [VODR_PATH_FAST] = "fast", [VODR_PATH_BLOCKS] = "blocks", [VODR_PATH_CLOCKED] = "clocked"};
     int path = find_word(value, words, COUNT(words));
     if (path < 0)
-        return option_refuse(o, value, "fast or blocks", error);
+        return option_refuse(o, value, "fast, blocks or clocked", error);
     ((view_options *)target)->path = (vodr_path)path;
+    return HOST_OK;
+}
+
+static host_status set_cycles(void *target, const option *o, const char *value, host_error *error)
+{
+    (void)o, (void)value, (void)error;
+    ((view_options *)target)->cycles = true;
     return HOST_OK;
 }
 
@@ -197,7 +209,10 @@ static const option view_rows[] = {
      "(the data's range; for CT in Hounsfield units the\n"
      "transfer function's own window)"},
     {"threads", 0, "N", false, set_threads, "threads to draw with, 0 = all cores (0)"},
-    {"path", 0, "PATH", false, set_path, "fast, or blocks: block by block on one thread (fast)"},
+    {"path", 0, "PATH", false, set_path,
+     "fast, blocks, clocked: block by block, or cycle by cycle,\n"
+     "on one thread (fast)"},
+    {"cycles", 0, NULL, false, set_cycles, "count cycles too: each block's, and what it waits for"},
     {"simd", 0, "SET", false, set_simd,
      "instructions of the fast path: best, portable, avx2,\n"
      "avx512 (best)"},
@@ -262,6 +277,17 @@ static host_status open_machine(const char *name, vodr_machine *machine, host_er
         free(text);
     }
     return status == VODR_OK ? HOST_OK : host_fail(error, HOST_BAD_INPUT, "--machine: %s", reason.text);
+}
+
+host_status view_options_output(const view_options *v, const char *input, const char *path, host_error *error)
+{
+    const char *const inputs[] = {input, v->transfer, v->machine};
+    for (size_t i = 0; i < COUNT(inputs); i++) {
+        host_status status = output_spare(path, inputs[i], error);
+        if (status != HOST_OK)
+            return status;
+    }
+    return output_check(path, error);
 }
 
 host_status view_options_machine(const view_options *v, vodr_machine *machine, host_error *error)

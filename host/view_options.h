@@ -27,6 +27,7 @@ typedef struct view_options {
     int32_t threads; /* 0 = all cores */
     vodr_path path;
     vodr_simd simd;
+    bool cycles; /* count cycles too */
     uint8_t background[3];
     bool alpha;
 } view_options;
@@ -36,6 +37,10 @@ extern const option_table option_view, option_machine, option_volume, option_pic
 
 view_options view_options_default(void);
 void view_options_free(view_options *v);
+
+/* Whether an output may be written: it is none of the files that are read, `input` and those of the options, and it can
+ * be. */
+host_status view_options_output(const view_options *v, const char *input, const char *path, host_error *error);
 
 /* The machine that --machine names, a named one or a file (a name that holds a '/' or that a file has), with the
  * overrides applied, checked that it can be built. */

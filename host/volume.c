@@ -58,7 +58,8 @@ static host_status check_regular(const char *path, host_error *error)
     if (stat(path, &status))
         return host_fail(error, HOST_BAD_INPUT, "%s: %s", path, strerror(errno));
     if (S_ISDIR(status.st_mode))
-        return host_fail(error, HOST_BAD_INPUT, "%s: is a directory, must be a volume file", path);
+        return host_fail(error, HOST_BAD_INPUT,
+                         "%s: is a directory, must be a volume file (dcm2niix makes one of a DICOM series)", path);
     if (!S_ISREG(status.st_mode))
         return host_fail(error, HOST_BAD_INPUT, "%s: is not a regular file", path);
     if (status.st_size == 0)
@@ -101,12 +102,11 @@ static host_status check_spacing(const char *path, const volume_file *f, host_er
 {
     double least = INFINITY, most = 0;
     for (int i = 0; i < 3; i++) {
-        double spacing = fabs(f->spacing[i]);
-        if (!(spacing >= DBL_MIN) || isinf(spacing))
-            return host_fail(error, HOST_BAD_INPUT, "%s: the spacing along %c is %g, must be finite and not 0", path,
+        if (!(f->spacing[i] >= DBL_MIN) || isinf(f->spacing[i]))
+            return host_fail(error, HOST_BAD_INPUT, "%s: the spacing along %c is %g, must be above 0 and finite", path,
                              "xyz"[i], f -> spacing[i]);
-        least = fmin(least, spacing);
-        most = fmax(most, spacing);
+        least = fmin(least, f->spacing[i]);
+        most = fmax(most, f->spacing[i]);
     }
     if (most / least > MAX_ANISOTROPY)
         return host_fail(error, HOST_BAD_INPUT,
@@ -121,6 +121,9 @@ static host_status check_options(const char *path, const volume_options *o, cons
         if (o->dims_vox[i] && o->dims_vox[i] != f->dims_vox[i])
             return host_fail(error, HOST_BAD_INPUT, "--dims: the size along %c is %d, but %s is an %s file of %lld",
                              "xyz"[i], o -> dims_vox[i], path, f -> format, (long long)f -> dims_vox[i]);
+        if (o->spacing[i] != 0 && o->spacing[i] != f->spacing[i])
+            return host_fail(error, HOST_BAD_INPUT, "--spacing: along %c it is %g, but %s is an %s file of %g",
+                             "xyz"[i], o -> spacing[i], path, f -> format, f -> spacing[i]);
         if (o->crop && (o->crop_lo[i] < 0 || o->crop_lo[i] >= o->crop_hi[i] || o->crop_hi[i] > f->dims_vox[i]))
             return host_fail(error, HOST_BAD_INPUT, "--crop: the range along %c is %d:%d, must lie within 0:%lld of %s",
                              "xyz"[i], o -> crop_lo[i], o -> crop_hi[i], (long long)f -> dims_vox[i], path);
@@ -150,10 +153,8 @@ static host_status check_header(const char *path, const volume_options *o, const
 
 static void set_orientation(const volume_file *f, bool no_orient, volume *v)
 {
-    double direction[3][3] = {{0}};
-    for (int i = 0; i < 3; i++)
-        direction[i][i] = no_orient ? 1 : f->spacing[i];
-    orientation_nearest(f->oriented && !no_orient ? f->direction : direction, v->axis, v->sign);
+    static const double none[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    orientation_nearest(f->oriented && !no_orient ? f->direction : none, v->axis, v->sign);
 }
 
 /* Defines a function that finds the least and greatest of n stored voxels. */
@@ -226,7 +227,7 @@ static host_status fill(const volume_options *o, const volume_file *f, volume *v
         lo[i] = o->crop ? o->crop_lo[i] : 0;
         hi[i] = o->crop ? o->crop_hi[i] : (int32_t)f->dims_vox[i];
         v->dims_vox[i] = hi[i] - lo[i];
-        v->spacing[i] = fabs(f->spacing[i]);
+        v->spacing[i] = f->spacing[i];
     }
     v->type = f->type;
     v->slope = f->slope;

@@ -59,12 +59,25 @@ static host_status check_data_file(const char *path, const char *value, host_err
     return HOST_OK;
 }
 
+/* teem would read a negative size as a huge one or as 0. */
+static host_status check_sizes(const char *path, const char *value, host_error *error)
+{
+    char *end;
+    for (long long size; (size = strtoll(value, &end, 10)), end != value; value = end)
+        if (size < 1 || size > VODR_MAX_DIM_VOX)
+            return host_fail(error, HOST_BAD_INPUT, "%s: field sizes holds %lld, must be 1 to %d voxels", path, size,
+                             VODR_MAX_DIM_VOX);
+    return HOST_OK;
+}
+
 static host_status check_line(const char *path, const char *line, host_error *error)
 {
     const char *value = data_file_value(line);
     size_t length = strlen(line), most = is_free_text(line) ? MAX_LINE_BYTES - 1 : MAX_FIELD_BYTES;
     if (length > most)
         return host_fail(error, HOST_BAD_INPUT, "%s: a line of the NRRD header has more than %zu bytes", path, most);
+    if (strncasecmp(line, "sizes:", 6) == 0)
+        return check_sizes(path, line + 6, error);
     return value ? check_data_file(path, value, error) : HOST_OK;
 }
 

@@ -91,7 +91,7 @@ for command in compare machine info; do
     expect "vodr $command --help has an example" '^Example' ../out-$$
 done
 good "vodr render --help" "$vodr" render --help
-for option in output machine set tf window view projection zoom size slices crop blend filter traversal threads repeat \
+for option in output machine set tf window view projection zoom size slices crop blend filter traversal threads path cycles repeat \
     stats raw registers background alpha no-orient dims type spacing endian; do
     expect "vodr render --help explains --$option" "--$option" ../out-$$
 done
@@ -104,7 +104,9 @@ done
     good "render, all outputs" "$vodr" render $raw -o a.png --raw a.rgba --stats a.json --registers r.json
     expect "stats: schema" '"schema": "vodr-stats-1"' a.json
     expect "stats: fragments" '"fragments": 1024' a.json
-    expect "stats: no cycles yet" '"cycles": null' a.json
+    for name in cycles stalls bottleneck; do
+        expect "stats: no $name without --cycles" "\"$name\": null" a.json
+    done
     verdict "stats: frame_sha256 is of --raw" \
         "$(grep -q "$(sha256sum a.rgba | cut -d' ' -f1)" a.json || echo "it is not")"
     verdict "raw: 16x8 pixels of 4 bytes" "$([ "$(wc -c <a.rgba)" -eq 512 ] || wc -c a.rgba)"
@@ -135,6 +137,50 @@ done
     printf '0 1 0 0 0\n255 1 1 1 0.5 \n' >tf.txt
     good "a transfer-function file" "$vodr" render $raw --tf tf.txt
 }
+
+# ---- cycles ----
+# The lines of a statistics file from `"NAME": {` to the brace that closes it.
+object() { # NAME FILE
+    sed -n "/^  \"$1\": {/,/^  }/p" "$2"
+}
+# Blocks whose busy, stalled and idle cycles do not add up to the total.
+unbalanced() { # FILE
+    object cycles "$1" | tr -d '",:' | awk '
+        $1 == "total" { total = $2 }
+        $2 == "{" { name = $1; sum = 0 }
+        $1 == "busy" || $1 == "stalled" || $1 == "idle" { sum += $2; left[name] = sum }
+        END {
+            for (name in left) if (name != "cycles") { blocks++; if (left[name] != total) print name, left[name], total }
+            if (blocks != 7 || total < 500) print blocks " blocks, total " total
+        }'
+}
+# shellcheck disable=SC2086
+for machine in 'paper-16' 'paper-16 --set nonblocking=1' 'paper-general --set memory=dram' 'paper-32 --traversal tile'; do
+    how="$raw --crop 0:12,0:8,0:6 --view -30,20 --machine $machine --cycles --set brick=4"
+    good "--cycles: $machine" "$vodr" render $how --stats fast.json
+    expect "the summary counts cycles" '^cycles  *[0-9,]*  ([0-9.]* a fragment)$' ../out-$$
+    expect "and names the bottleneck" '^bottleneck  *[a-z]' ../out-$$
+    good "--path blocks" "$vodr" render $how --path blocks --stats blocks.json
+    good "--path clocked" "$vodr" render $how --path clocked --stats clocked.json
+    verdict "every block's cycles add up to the total" "$(unbalanced fast.json)"
+    grep -vE '"(wall_s|fragments_per_s)":' fast.json >fast.stats
+    for path in blocks clocked; do
+        grep -vE '"(wall_s|fragments_per_s)":' $path.json >$path.stats
+        same "$path: the same frame, counts and cycles" fast.stats $path.stats
+    done
+    for cause in divider slice texture_load fragment_fifo cache hazard write_back fill dram_row dram_refresh; do
+        object stalls fast.json | grep -q "\"$cause\": [0-9]" || echo "$cause"
+    done >missing
+    verdict "every stall cause is there" "$(cat missing)"
+done
+# shellcheck disable=SC2086
+{
+    good "--path clocked without --cycles" "$vodr" render $raw --path clocked --stats clocked.json
+    expect "tells none" '"cycles": null' clocked.json
+    good "nothing on the screen" "$vodr" render $raw --cycles --size 2x2 --zoom 0.0001 --stats nothing.json
+    expect "has a bottleneck all the same" '"bottleneck": "[a-z]' nothing.json
+}
+rm -f ./*.stats missing
 good "machine list" "$vodr" machine list
 expect "machine list has paper-32" '^paper-32 ' ../out-$$
 
@@ -183,7 +229,7 @@ refuse() {
         bad 2 "--$option '$value'" "$vodr" render $raw -o no.png "--$option" "$value"
     done
 }
-refuse view 1 a,b 1,2,3,4 "1, 2" 1,,2 nan,0 1e999,0 0x10,0 ""
+refuse view 0,90.5 36001,0 1 a,b 1,2,3,4 "1, 2" 1,,2 nan,0 1e999,0 0x10,0 ""
 refuse projection isometric perspective: perspective:0.5 perspective:151 perspective:x parallel:30 ""
 refuse zoom 0 -1 x inf 1x ""
 refuse size 0x3 3x0 16385x1 3 3x 3x4x5 -3x4 3X4 99999999999999999999x1 ""
@@ -193,6 +239,7 @@ refuse threads -1 1025 x
 refuse repeat 0 1001 x
 refuse background fff gggggg 1234567 0x1234
 refuse set ways =3 ""
+refuse path slow Fast ""
 
 # shellcheck disable=SC2086
 {
@@ -202,6 +249,10 @@ refuse set ways =3 ""
     bad 2 "--filter" "$vodr" render $raw -o no.png --filter cubic
     bad 2 "--traversal" "$vodr" render $raw -o no.png --traversal spiral
     bad 2 "cache_bytes" "$vodr" render $raw -o no.png --set cache_bytes=64 --set ways=1024
+    bad 2 "dram_trfc_cycles=300 must be below dram_refresh_cycles=300" "$vodr" render $raw -o no.png \
+        --set dram_trfc_cycles=300 --set dram_refresh_cycles=300
+    bad 2 "--set: texture_latency_cycles is '0'" "$vodr" render $raw -o no.png --set texture_latency_cycles=0
+    bad 2 "--set: write_fifo is '257'" "$vodr" render $raw -o no.png --set write_fifo=257
     bad 2 "'paper-48'" "$vodr" render $raw -o no.png --machine paper-48
     bad 2 "'./paper-16'" "$vodr" render $raw -o no.png --machine ./paper-16
     bad 2 "'.' is a directory" "$vodr" render $raw -o no.png --machine .
@@ -220,7 +271,14 @@ refuse set ways =3 ""
 nrrd" -o no.png
     : >empty.nrrd
     bad 2 "empty.nrrd" "$vodr" render empty.nrrd -o no.png
-    bad 2 "here" "$vodr" render ../here -o no.png
+    bad 2 "dcm2niix" "$vodr" render ../here -o no.png
+    { head -c 128 /dev/zero && echo DICM; } >series.dcm
+    bad 2 "dcm2niix" "$vodr" info series.dcm
+    printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n77777777' >same.nrrd
+    bad 2 "--spacing: along y it is 2" "$vodr" render same.nrrd -o no.png --spacing 1,2,1
+    good "info of voxels that are all alike" "$vodr" info same.nrrd
+    expect "it suggests no window that would be refused" '^suggested *--tf ramp$' ../out-$$
+    bad 2 "at zoom 0.01 and 16384x16384 pixels" "$vodr" render $raw -o no.png --zoom 0.01 --size 16384x16384
 
     # ---- unwritable output ----
     mkdir sub
@@ -233,6 +291,10 @@ nrrd" -o no.png
     done
     bad 3 "/dev/full" "$vodr" render $raw -o no.png --stats /dev/full --raw no.rgba
     bad 3 "'a.png/x'" "$vodr" render $raw -o a.png/x
+    # What is read is never replaced.
+    cp v.raw kept.raw
+    bad 2 "'kept.raw' is read by this command" "$vodr" render kept.raw --dims 16x8x8 -o kept.raw
+    bad 2 "'./kept.raw' is read by this command" "$vodr" render v.raw --dims 16x8x8 --machine kept.raw --raw ./kept.raw
     # A limit on the size of files stands in for a full disk: old files must stay, new ones must not.
     limited() {
         (ulimit -f 8 && exec "$@")

@@ -136,7 +136,7 @@ view='--dims 16x8x8 --view -30,20 --size 100x70 --zoom 5 --threads 1 --set brick
 {
     page 'report' a.html "$vodr" report 'a volume.raw' $view -o a.html
     verdict 'it says what it wrote' "$(grep -qx 'written  *a.html' ../out || cat ../out)"
-    "$vodr" render 'a volume.raw' $view --stats a.json -o a.png >/dev/null
+    "$vodr" render 'a volume.raw' $view --cycles --stats a.json -o a.png >/dev/null
 }
 block a.html stats | grep -vE '"(wall_s|fragments_per_s)":' >../stats.page
 grep -vE '"(wall_s|fragments_per_s)":' a.json >../stats.file
@@ -151,14 +151,17 @@ equal 'every visit is there' "$(block a.html report | sed 's/.*"brick":\[\([0-9,
     "$(member brick_visits <a.json)"
 for machine in paper-general paper-16 paper-32; do
     "$vodr" render 'a volume.raw' --dims 16x8x8 --view -30,20 --size 100x70 --zoom 5 --machine $machine \
-        --stats b.json >/dev/null
+        --cycles --stats b.json >/dev/null
     equal "misses beside: $machine" "$(block a.html report | sed "s/.*\"machine\":\"$machine\"//" | member misses)" \
         "$(member misses <b.json)"
+    equal "cycles beside: $machine" "$(block a.html report | sed "s/.*\"machine\":\"$machine\"//" | member cycles)" \
+        "$(member total <b.json)"
 done
 equal 'all draw the same frame' "$(block a.html report | grep -o '"same_frame":[a-z]*' | sort -u)" '"same_frame":true'
 parameters=$("$vodr" machine show paper-16 | grep -c ' = ')
 equal 'every parameter is there' "$(block a.html report | grep -o '"values":' | wc -l)" "$parameters"
 browse 'in a browser' a.html "<span>Misses</span><b>$misses</b>"
+browse 'what limits the frame, in a browser' a.html "What limits the frame: $(member bottleneck <a.json | sed 's/; next.*//')"
 
 cp a.html ../first.html
 vodr() {
@@ -207,6 +210,7 @@ browse 'a file name that is not UTF-8, in a browser' g.html 'caf'
 # ---- what is refused ----
 bad 2 '--output' "$vodr" report "$raw" --dims 16x8x8
 bad 2 'no-such.nrrd' "$vodr" report no-such.nrrd -o no.html
+bad 2 '--path clocked' "$vodr" report "$raw" --dims 16x8x8 -o no.html --path clocked
 bad 2 '--repeat' "$vodr" report "$raw" --dims 16x8x8 -o no.html --repeat 2
 bad 2 'ways' "$vodr" report "$raw" --dims 16x8x8 -o no.html --set ways=3
 bad 3 "'no/such/place.html'" "$vodr" report "$raw" --dims 16x8x8 -o no/such/place.html

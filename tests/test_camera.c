@@ -350,6 +350,19 @@ static void footprint_bounds_every_brick(void **state)
     assert_in_range(view_of(&c, &v, &depth).footprint, 2965821 - 2, 2965821 + 2); /* sqrt 8 */
 }
 
+/* A frame of one pixel has no corners apart: its steps alone say how large products get. */
+static void one_pixel(void **state)
+{
+    (void)state;
+    volume v = unit_volume(48, 40, 30);
+    double depth;
+    for (double fov = 1; fov <= 150; fov++)
+        for (double zoom = 0.05; zoom < 50; zoom *= 2) {
+            camera c = {.perspective = true, .fov_deg = fov, .zoom = zoom, .width_px = 1, .height_px = 1, .slices = 40};
+            view_of(&c, &v, &depth);
+        }
+}
+
 static void refuse(camera c, const volume *v, const char *sentence)
 {
     vodr_view view;
@@ -420,6 +433,7 @@ int main(void)
         cmocka_unit_test(positions_are_the_formulas),
         cmocka_unit_test(perspective_eye_and_zoom),
         cmocka_unit_test(footprint_bounds_every_brick),
+        cmocka_unit_test(one_pixel),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests_name("camera", tests, NULL, NULL);

@@ -72,7 +72,6 @@ static void nrrd_orientation(void **state)
     } cases[] = {
         {"", {1, 1, 1}, {0, 1, 2}, {1, 1, 1}},
         {"spacings: 0.5 nan 1.5\n", {0.5, 1, 1.5}, {0, 1, 2}, {1, 1, 1}},
-        {"spacings: 0.5 -2 1.5\n", {0.5, 2, 1.5}, {0, 1, 2}, {1, -1, 1}},
         {"space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n", {2, 3, 4}, {0, 2, 1}, {1, 1, -1}},
         {"space: RAS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n", {2, 3, 4}, {0, 2, 1}, {-1, 1, 1}},
         {"space: LAS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n", {2, 3, 4}, {0, 2, 1}, {1, 1, 1}},
@@ -136,8 +135,8 @@ static void nrrd_refusals(void **state)
         {"type: uchar\ndimension: 3\nsizes: 30000 30000 30000\nencoding: gzip\n\n", COUNT, "ends early"},
         {"type: uchar\ndimension: 3\nsizes: 30000 30000 30000\nencoding: ascii\n\n", COUNT, "ends early"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 2147483648\nencoding: raw\n\n", COUNT, "2147483648"},
-        {"type: uchar\ndimension: 3\nsizes: 5 0 3\nencoding: raw\n\n", COUNT, "NRRD"},
-        {"type: uchar\ndimension: 3\nsizes: 5 -4 3\nencoding: raw\n\n", COUNT, "NRRD"},
+        {"type: uchar\ndimension: 3\nsizes: 5 0 3\nencoding: raw\n\n", COUNT, "sizes holds 0, must be 1 to 32768"},
+        {"type: uchar\ndimension: 3\nsizes: 5 -4 3\nencoding: raw\n\n", COUNT, "sizes holds -4"},
         {"type: uchar\ndimension: 2\nsizes: 12 5\nencoding: raw\n\n", COUNT, "dimension is 2"},
         {"type: uchar\ndimension: 4\nsizes: 3 5 2 2\nencoding: raw\n\n", COUNT, "dimension is 4"},
         {"type: int64\ndimension: 3\nsizes: 5 4 3\nendian: little\nencoding: raw\n\n", COUNT, "type is"},
@@ -146,6 +145,8 @@ static void nrrd_refusals(void **state)
         {"type: what\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n", COUNT, "what"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: hex\n\n", COUNT, "encoding is hex"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 0 1\nencoding: raw\n\n", COUNT, "spacing"},
+        {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 -2 1\nencoding: raw\n\n", COUNT,
+         "spacing along y is -2, must be above 0"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 1e30 1\nencoding: raw\n\n", COUNT, "differ by more"},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspacings: 1 inf 1\nencoding: raw\n\n", COUNT, ""},
         {"type: uchar\ndimension: 3\nsizes: 5 4 3\nspace: RAS\nspace directions: (0,0,0) (0,1,0) (0,0,1)\n"
