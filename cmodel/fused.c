@@ -67,7 +67,8 @@ static vodr_status make_marks(fused_scene *s, vodr_error *error)
 static bool take_band(fused *f, int32_t *y0_px, int32_t *y1_px)
 {
     pthread_mutex_lock(&f->lock);
-    int32_t left = f->scene.view->height_px - f->next_row_px, rows = f->threads > 1 ? left / (2 * f->threads) : left;
+    int32_t left = f->scene.view->height_px - f->next_row_px;
+    int32_t rows = f->threads > 1 ? left * 7 / (8 * f->threads) : left;
     rows = rows < MIN_BAND_PX ? MIN_BAND_PX : rows;
     rows = rows < left ? rows : left;
     *y0_px = f->next_row_px;

@@ -4,19 +4,22 @@
 
 #include "view.h"
 
-/* One border of the brick as a bound on x: on row y the bound is floor(n/d) + 1 with n affine in y. Kept as quotient
- * and remainder, so that a row further down costs two additions. */
-typedef struct raster_edge {
-    int64_t quotient, remainder, divisor;
-    int64_t quotient_step, remainder_step;
-} raster_edge;
+/* The brick's borders as bounds on x. On row y a bound is floor(n/divisor) + 1 with n affine in y; kept as quotient and
+ * remainder, so that a row further down costs two additions. Bounds from the left come first, as many from the right
+ * follow: one of each for an axis along which x moves. */
+typedef struct raster_edges {
+    int32_t count;
+    int64_t quotient[6], remainder[6], divisor[6];
+    int64_t quotient_step[6], remainder_step[6];
+} raster_edges;
 
 typedef struct rasterizer {
     const brick_slice *slice;
     px_rect bound;
     int32_t y;
-    int edges; /* left[] and right[], one of each for an axis along which x moves */
-    raster_edge left[3], right[3];
+    bool any;       /* a row had fragments */
+    int64_t row[3]; /* the plane's numerators at (0, y) */
+    raster_edges edges;
 } rasterizer;
 
 /* The slice's fragments within `bound`. The slice must outlive the walk. */
