@@ -96,9 +96,10 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
 	@scripts/tables $(BUILD) size table1 views cycles tour
 
-bench: ## measure the speed, and write its tables in the pages again
+bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
-	@scripts/tables $(BUILD) speed cycle-speed
+	@$(BUILD)/bench/speed
+	@scripts/tables $(BUILD) cycle-speed
 
 $(BUILD)/generate: hw/generate.c
 	@mkdir -p $(@D)
