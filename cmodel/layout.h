@@ -58,10 +58,11 @@ static inline int32_t log2_of(int32_t power_of_two)
 typedef struct fb_layout {
     int32_t line_w_bits, line_h_bits; /* logarithms of a line's width and height in pixels */
     bool tiled;
-    int32_t tiles;     /* tiled: tiles across the frame */
-    int32_t columns;   /* linear: lines across the frame */
-    int32_t tile_bits; /* tiled: logarithm of the lines in a tile */
-    int64_t lines;     /* in the whole frame buffer */
+    int32_t tiles;       /* tiled: tiles across the frame */
+    int32_t columns;     /* linear: lines across the frame */
+    int32_t tile_bits;   /* tiled: logarithm of the lines in a tile */
+    int32_t column_mask; /* tiled: lines across a tile, less one */
+    int64_t lines;       /* in the whole frame buffer */
 } fb_layout;
 
 enum { FB_TILE_BITS = 5, FB_TILE_PX = 1 << FB_TILE_BITS };
@@ -80,19 +81,34 @@ static inline fb_layout fb_layout_of(const vodr_machine *m, int32_t width_px, in
                    .tiles = ceil_div32(width_px, FB_TILE_PX),
                    .columns = ceil_div32(width_px, w)};
     l.tile_bits = 2 * FB_TILE_BITS - l.line_w_bits - l.line_h_bits;
+    l.column_mask = (FB_TILE_PX >> l.line_w_bits) - 1;
     int64_t tiles = (int64_t)l.tiles * ceil_div32(height_px, FB_TILE_PX);
     l.lines = l.tiled ? tiles << l.tile_bits : (int64_t)l.columns * ceil_div32(height_px, h);
     return l;
 }
 
+/* The lines of a row of pixels: their numbers, but for what x adds. */
+static inline int64_t line_row(const fb_layout *l, int32_t y)
+{
+    int32_t row = y >> l->line_h_bits;
+    if (!l->tiled)
+        return (int64_t)row * l->columns;
+    int32_t across = FB_TILE_BITS - l->line_w_bits, down = FB_TILE_BITS - l->line_h_bits;
+    return ((int64_t)(y >> FB_TILE_BITS) * l->tiles << l->tile_bits) + ((row & ((1 << down) - 1)) << across);
+}
+
+/* The line of column x in a row. */
+static inline int64_t line_in_row(const fb_layout *l, int64_t row, int32_t x)
+{
+    int32_t column = x >> l->line_w_bits;
+    if (!l->tiled)
+        return row + column;
+    return row + ((int64_t)(x >> FB_TILE_BITS) << l->tile_bits) + (column & l->column_mask);
+}
+
 static inline int64_t line_number(const fb_layout *l, int32_t x, int32_t y)
 {
-    int32_t column = x >> l->line_w_bits, row = y >> l->line_h_bits;
-    if (!l->tiled)
-        return (int64_t)row * l->columns + column;
-    int64_t tile = (int64_t)(y >> FB_TILE_BITS) * l->tiles + (x >> FB_TILE_BITS);
-    int32_t across = FB_TILE_BITS - l->line_w_bits, down = FB_TILE_BITS - l->line_h_bits;
-    return (tile << l->tile_bits) + ((row & ((1 << down) - 1)) << across) + (column & ((1 << across) - 1));
+    return line_in_row(l, line_row(l, y), x);
 }
 
 /* Index of a pixel within its line. */

@@ -81,8 +81,8 @@ static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32
 {
     int32_t x = s->x0 + from, count = to - from;
     uint32_t written;
-    int64_t line = line_number(&p->memory.layout, x, s->y);
-    int32_t offset = line_offset(&p->memory.layout, x, s->y);
+    int64_t line = line_in_row(&p->memory.layout, p->line_row, x);
+    int32_t offset = p->picture ? line_offset(&p->memory.layout, x, s->y) : 0;
     uint64_t misses = p->cache.misses;
     vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count);
     if (p->observer && p->observer->miss && p->cache.misses != misses)
@@ -148,6 +148,7 @@ static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
     int32_t count = s->x1 - s->x0;
     p->counters.fragments += (uint64_t)count;
     p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
+    p->line_row = line_row(&p->memory.layout, s->y);
     if (p->picture)
         shade_span(p, slice, s);
     for (int32_t from = 0, to; from < count; from = to) {

@@ -22,6 +22,7 @@ typedef struct pipeline {
     frame_buffer memory;
     uint16_t *densities;  /* of a span */
     vodr_rgba *fragments; /* likewise */
+    int64_t line_row;     /* of the span at hand */
     uint8_t *seen;        /* by brick: visited before */
     vodr_counters counters;
     const marks *marks;              /* without a picture: what a picture drawn before tells; set it as the observer */
