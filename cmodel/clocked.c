@@ -7,6 +7,7 @@
 
 #include "clocked_machine.h"
 #include "error.h"
+#include "totals.h"
 
 /* Everything drawn, nothing on its way; the divider may still be looking for more bricks in vain. */
 static bool drained(const clocked *c)
@@ -31,30 +32,9 @@ static void run(clocked *c)
     }
 }
 
-static void set_block(vodr_cycles *n, vodr_block block, uint64_t stalled)
-{
-    n->blocks[block].stalled = stalled;
-    n->blocks[block].idle = n->total - n->blocks[block].busy - stalled;
-}
-
 static void gather(clocked *c)
 {
-    vodr_cycles *n = &c->n;
-    uint64_t *stalls = n->stalls;
-    bool blocking = !c->m->nonblocking;
-    n->total = (uint64_t)(c->last + 1);
-    stalls[VODR_STALL_DRAM_ROW] = c->memory.row_cycles;
-    stalls[VODR_STALL_DRAM_REFRESH] = c->memory.refresh_cycles;
-    n->blocks[VODR_BLOCK_FRAME_BUFFER].busy = c->memory.busy_cycles;
-    uint64_t door = stalls[VODR_STALL_TEXTURE_LOAD] + stalls[VODR_STALL_FRAGMENT_FIFO];
-    set_block(n, VODR_BLOCK_VOLUME_DIVIDER, stalls[VODR_STALL_DIVIDER]);
-    set_block(n, VODR_BLOCK_SLICE_GENERATOR, stalls[VODR_STALL_SLICE]);
-    set_block(n, VODR_BLOCK_RASTERIZER, door);
-    set_block(n, VODR_BLOCK_TEXTURE_UNIT, door);
-    set_block(n, VODR_BLOCK_ALPHA_BLENDER, stalls[VODR_STALL_CACHE] + (blocking ? stalls[VODR_STALL_HAZARD] : 0));
-    set_block(n, VODR_BLOCK_PIXEL_CACHE,
-              stalls[VODR_STALL_WRITE_BACK] + stalls[VODR_STALL_FILL] + (blocking ? 0 : stalls[VODR_STALL_HAZARD]));
-    set_block(n, VODR_BLOCK_FRAME_BUFFER, stalls[VODR_STALL_DRAM_ROW] + stalls[VODR_STALL_DRAM_REFRESH]);
+    totals_close(&c->n, &c->memory, c->last);
     pixel_cache_flush(&c->cache);
     vodr_counters *out = &c->counters;
     out->hits = c->cache.hits;
@@ -64,7 +44,7 @@ static void gather(clocked *c)
     out->fb_read_bytes = c->pixels.read_bytes;
     out->fb_write_bytes = c->pixels.write_bytes;
     out->skipped_bricks = c->divider.empty_bricks;
-    out->cycles = *n;
+    out->cycles = c->n;
 }
 
 static void read_line(void *context, int64_t line, vodr_rgba *pixels)

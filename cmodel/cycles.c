@@ -11,6 +11,7 @@
 
 #include "cycles_state.h"
 #include "layout.h"
+#include "totals.h"
 
 enum { EAGER_OPS = 4096 };
 
@@ -228,13 +229,6 @@ static void flush(cycles *c)
     }
 }
 
-static void set_block(vodr_cycles *n, vodr_block block, uint64_t stalled)
-{
-    vodr_block_cycles *b = &n->blocks[block];
-    b->stalled = stalled;
-    b->idle = n->total - b->busy - stalled;
-}
-
 bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
 {
     vodr_cycles *n = &c->n;
@@ -249,20 +243,7 @@ bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
     happened(c, c->last_read + c->m->blend_cycles - 1);
     n->blocks[VODR_BLOCK_VOLUME_DIVIDER].busy += (uint64_t)work_cycles;
     happened(c, (c->announced < 0 ? -1 : visit_at(c, c->announced)->divided) + work_cycles);
-    n->total = (uint64_t)(c->last + 1);
-    n->stalls[VODR_STALL_DRAM_ROW] = c->memory.row_cycles;
-    n->stalls[VODR_STALL_DRAM_REFRESH] = c->memory.refresh_cycles;
-    n->blocks[VODR_BLOCK_FRAME_BUFFER].busy = c->memory.busy_cycles;
-    uint64_t door = n->stalls[VODR_STALL_TEXTURE_LOAD] + n->stalls[VODR_STALL_FRAGMENT_FIFO];
-    uint64_t hazards = n->stalls[VODR_STALL_HAZARD];
-    set_block(n, VODR_BLOCK_VOLUME_DIVIDER, n->stalls[VODR_STALL_DIVIDER]);
-    set_block(n, VODR_BLOCK_SLICE_GENERATOR, n->stalls[VODR_STALL_SLICE]);
-    set_block(n, VODR_BLOCK_RASTERIZER, door);
-    set_block(n, VODR_BLOCK_TEXTURE_UNIT, door);
-    set_block(n, VODR_BLOCK_ALPHA_BLENDER, n->stalls[VODR_STALL_CACHE] + (c->nonblocking ? 0 : hazards));
-    set_block(n, VODR_BLOCK_PIXEL_CACHE,
-              n->stalls[VODR_STALL_WRITE_BACK] + n->stalls[VODR_STALL_FILL] + (c->nonblocking ? hazards : 0));
-    set_block(n, VODR_BLOCK_FRAME_BUFFER, n->stalls[VODR_STALL_DRAM_ROW] + n->stalls[VODR_STALL_DRAM_REFRESH]);
+    totals_close(n, &c->memory, c->last);
     *result = *n;
     return !c->failed;
 }
