@@ -8,7 +8,7 @@
 #include "error.h"
 #include "fused_band.h"
 
-enum { MIN_BAND_PX = 16, MAX_THREADS = 256, MAX_MARK_BYTES = 48 << 20 };
+enum { MIN_BAND_PX = 32, MAX_THREADS = 256, MAX_MARK_BYTES = 48 << 20 };
 
 /* What the threads share. */
 typedef struct fused {
@@ -68,7 +68,7 @@ static bool take_band(fused *f, int32_t *y0_px, int32_t *y1_px)
 {
     pthread_mutex_lock(&f->lock);
     int32_t left = f->scene.view->height_px - f->next_row_px;
-    int32_t rows = f->threads > 1 ? left * 7 / (8 * f->threads) : left;
+    int32_t rows = f->threads > 1 ? left * 6 / (5 * f->threads) : left;
     rows = rows < MIN_BAND_PX ? MIN_BAND_PX : rows;
     rows = rows < left ? rows : left;
     *y0_px = f->next_row_px;
