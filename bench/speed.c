@@ -3,10 +3,10 @@
  *   speed [REPEAT]    a table; each figure is the median of REPEAT frames (5) */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "cube.h"
+#include "stopwatch.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -23,19 +23,6 @@ static const row rows[] = {
     {"paper-32, view 0,0", "paper-32", 0, 0},
     {"paper-general, view 0,0", "paper-general", 0, 0},
 };
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* Fragments a second; 0 after a sentence on standard error. */
 static double measure(const cube *c, const row *r, int32_t threads, int repeat)
@@ -54,17 +41,16 @@ static double measure(const cube *c, const row *r, int32_t threads, int repeat)
     vodr_status status = vodr_machine_named(r->machine, &machine, &reason);
     for (int i = 0; i < repeat && status == VODR_OK; i++) {
         vodr_frame frame;
-        double start_s = now_s();
+        double start_s = stopwatch_now_s();
         status = vodr_render(&machine, &c->volume, &c->table, &view, &options, &frame, &counters, &reason);
-        times_s[i] = now_s() - start_s;
+        times_s[i] = stopwatch_now_s() - start_s;
         vodr_frame_free(&frame);
     }
     if (status != VODR_OK) {
         fprintf(stderr, "speed: %s: %s\n", r->label, reason.text);
         return 0;
     }
-    qsort(times_s, (size_t)repeat, sizeof *times_s, by_size);
-    return (double)counters.fragments / times_s[repeat / 2];
+    return (double)counters.fragments / stopwatch_median(times_s, (size_t)repeat);
 }
 
 int main(int argc, char **argv)

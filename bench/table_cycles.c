@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "jobs.h"
+#include "stopwatch.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -105,19 +105,6 @@ static bool print_frames(const cube *c, const vodr_view views[VIEWS])
 
 /* ---- what counting costs ---- */
 
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Seconds that a frame takes; 0 after a sentence on standard error. */
 static double draw_once(const cube *c, const vodr_machine *m, const vodr_view *view, const vodr_options *options,
                         uint64_t *cycles)
@@ -125,9 +112,9 @@ static double draw_once(const cube *c, const vodr_machine *m, const vodr_view *v
     vodr_frame frame;
     vodr_counters counters;
     vodr_error error;
-    double start_s = now_s();
+    double start_s = stopwatch_now_s();
     vodr_status status = vodr_render(m, &c->volume, &c->table, view, options, &frame, &counters, &error);
-    double time_s = now_s() - start_s;
+    double time_s = stopwatch_now_s() - start_s;
     if (status != VODR_OK)
         fprintf(stderr, "%s: %s\n", program, error.text);
     *cycles = counters.cycles.total;
@@ -150,9 +137,7 @@ static bool print_cost_row(const cube *c, const job_machine *row, const double a
     }
     if (!good)
         return false;
-    qsort(without_s, REPEAT, sizeof *without_s, by_size);
-    qsort(with_s, REPEAT, sizeof *with_s, by_size);
-    double before_s = without_s[REPEAT / 2], after_s = with_s[REPEAT / 2];
+    double before_s = stopwatch_median(without_s, REPEAT), after_s = stopwatch_median(with_s, REPEAT);
     printf("| %s | %.0f,%.0f | %.0f | %.0f | %+.0f %% | %.0f |\n", row->label, angles_deg[0], angles_deg[1],
            1e3 * before_s, 1e3 * after_s, 100 * (after_s / before_s - 1), 1e-6 * (double)cycles / after_s);
     return true;

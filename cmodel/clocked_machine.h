@@ -111,7 +111,6 @@ typedef struct clocked {
     int64_t popped, last_pop, tags, reads, last_read;
     int64_t miss_tags, miss_reads, last_miss_read;
     enum { IDLE, EVICT, FILL } miss; /* of the head of `tagged` */
-    int64_t miss_cycle;              /* EVICT: it was looked up; FILL: its victim left */
     blend_stage *stages;             /* the last blend_cycles reads, a ring */
     bool write_pending;
     int64_t write_granted;

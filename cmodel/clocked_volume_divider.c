@@ -30,11 +30,8 @@ void clocked_search(clocked *c)
     c->last_found = !found;
     if (!found)
         return;
-    int64_t bytes = density_bytes(c->m), burst = c->m->texture_burst_bytes;
-    for (int i = 0; i < 3; i++)
-        bytes *= c->divider.edge_vox[i] + 2 * filter_border_vox(c->m);
-    v.load_address =
-        c->pixels.layout.lines * line_bytes(c->m) + (int64_t)v.brick.brick * ((bytes + burst - 1) / burst * burst);
+    v.load_address = c->pixels.layout.lines * line_bytes(c->m) +
+                     (int64_t)v.brick.brick * brick_room_bytes(c->m, c->divider.edge_vox);
     v.load_bytes = (int64_t)texture_unit_load(&c->books, v.brick.brick, &v.brick.box);
     c->counters.texture_load_bytes += (uint64_t)v.load_bytes;
     *visit_at(c, ++c->found) = v;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "layout.h"
 #include "voxels.h"
 
 enum { MAX_ROWS = 33, BRICK_BYTES = 40 << 10 };
@@ -53,14 +54,6 @@ bool fused_brick_edges(const vodr_machine *m, const vodr_view *view, int32_t edg
     return voxel_cost * volume < direct_cost;
 }
 
-static int32_t bits_of(int32_t power_of_two)
-{
-    int32_t bits = 0;
-    while (1 << bits < power_of_two)
-        bits++;
-    return bits;
-}
-
 vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_volume *volume,
                               const int32_t edge_vox[3], const fused_kernels *kernels, vodr_error *error)
 {
@@ -72,8 +65,8 @@ vodr_status fused_brick_start(fused_brick *b, const vodr_machine *m, const vodr_
                        .direct = volume->voxel_bytes == 1 && !volume->map,
                        .row_words = edge_vox[0] + 1,
                        .texture = {.weight_bits = m->weight_bits, .guard_bits = m->guard_bits}};
-    b->texture.row_bits = bits_of(b->row_words);
-    b->texture.plane_bits = b->texture.row_bits + bits_of(edge_vox[1] + 1);
+    b->texture.row_bits = log2_of(b->row_words);
+    b->texture.plane_bits = b->texture.row_bits + log2_of(edge_vox[1] + 1);
     size_t words = (size_t)(edge_vox[2] + 2) << b->texture.plane_bits;
     if (posix_memalign(&b->words, 64, words * (b->wide ? sizeof(uint64_t) : sizeof(uint32_t))) != 0)
         b->words = NULL;

@@ -46,6 +46,15 @@ static inline int32_t density_bytes(const vodr_machine *m)
     return m->density_bits > 8 ? 2 : 1;
 }
 
+/* Memory that a brick of these edges takes, its border with it and whether or not the volume cuts it: whole bursts. */
+static inline int64_t brick_room_bytes(const vodr_machine *m, const int32_t edge_vox[3])
+{
+    int64_t bytes = density_bytes(m), burst = m->texture_burst_bytes;
+    for (int c = 0; c < 3; c++)
+        bytes *= edge_vox[c] + 2 * filter_border_vox(m);
+    return (bytes + burst - 1) / burst * burst;
+}
+
 static inline int32_t log2_of(int32_t power_of_two)
 {
     int32_t bits = 0;

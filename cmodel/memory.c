@@ -1,10 +1,11 @@
 #include "memory.h"
 
+#include "layout.h"
+
 memory memory_of(const vodr_machine *machine)
 {
-    memory m = {.machine = machine, .next_refresh = machine->dram_refresh_cycles};
-    while (1 << m.bus_bits < machine->mem_bus_bytes)
-        m.bus_bits++;
+    memory m = {
+        .machine = machine, .bus_bits = log2_of(machine->mem_bus_bytes), .next_refresh = machine->dram_refresh_cycles};
     for (int i = 0; i < MEMORY_MAX_BANKS; i++)
         m.open_row[i] = -1;
     return m;

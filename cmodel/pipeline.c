@@ -176,19 +176,11 @@ static int64_t divider_work(pipeline *p)
     return work;
 }
 
-/* Where bricks lie in memory: one after the other, each in the room of a whole one, rounded up to bursts. */
-static int64_t brick_address(const pipeline *p, size_t brick)
-{
-    int64_t bytes = density_bytes(p->machine), burst = p->machine->texture_burst_bytes;
-    for (int c = 0; c < 3; c++)
-        bytes *= p->divider.edge_vox[c] + 2 * filter_border_vox(p->machine);
-    return (int64_t)brick * ((bytes + burst - 1) / burst * burst);
-}
-
 /* A visit with `slices` slices before the one that has its first fragment. */
 static void clock_visit(pipeline *p, const candidate *c, int64_t load_bytes, int32_t slices)
 {
-    cycle_visit visit = {.load_bytes = load_bytes, .load_address = brick_address(p, c->brick)};
+    cycle_visit visit = {.load_bytes = load_bytes};
+    visit.load_address = (int64_t)c->brick * brick_room_bytes(p->machine, p->divider.edge_vox);
     visit.work_cycles = divider_work(p);
     cycles_visit(p->clock, &visit);
     for (int32_t i = 0; i < slices; i++) {

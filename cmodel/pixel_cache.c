@@ -21,8 +21,7 @@ vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t fra
                        .clear_on_first_touch = m->clear_on_first_touch,
                        .replacement = (vodr_replacement)m->replacement,
                        .lfsr = LFSR_SEED};
-    while (1 << c->set_bits < c->sets)
-        c->set_bits++;
+    c->set_bits = log2_of(c->sets);
     size_t lines = (size_t)c->sets * (size_t)c->ways;
     c->lines = malloc(lines * sizeof *c->lines);
     c->pixels = picture ? malloc(lines * (size_t)c->line_pixels * sizeof *c->pixels) : NULL;
