@@ -8,7 +8,7 @@ int64_t clocked_probe_slice(const brick_slice *slice, const px_rect *bound, bool
     rasterizer rows;
     span s;
     rasterizer_start(&rows, slice, bound);
-    int32_t first = rows.y;
+    int32_t first = rows.bound.y0;
     *found = rasterizer_next(&rows, &s);
     return *found ? s.y + 1 - first : rows.bound.y1 - first;
 }

@@ -108,22 +108,18 @@ static void flush(fused_band *b)
 /* Puts a span into the batch, in pieces where it is long: positions, or when sparse densities at once. */
 static void add_span(fused_band *b, const brick_slice *slice, const span *s, fused_row *row)
 {
-    span piece = *s;
-    while (piece.x0 < s->x1) {
-        int32_t n = s->x1 - piece.x0, room = FUSED_BATCH - b->count;
-        n = n < room ? n : room;
-        piece.x1 = piece.x0 + n;
+    for (int32_t x = s->x0, n; x < s->x1; x += n) {
+        int32_t room = FUSED_BATCH - b->count;
+        n = s->x1 - x < room ? s->x1 - x : room;
+        const span piece = {.y = s->y, .x0 = x, .x1 = x + n};
         for (int c = 0; c < 3; c++)
-            row->a[c] = (uint64_t)piece.a[c];
+            row->a[c] = (uint64_t)numerator_at(&slice->plane, c, x, s->y);
         if (b->scene->sparse)
             texture_unit_filter(&b->scene->direct, slice, &piece, b->batch.density + b->count);
         else
             b->scene->kernels->address(&b->brick.texture, row, n, &b->batch, b->count);
-        b->rows[b->row_count++] = (band_row){.y = s->y, .x = piece.x0, .count = n};
+        b->rows[b->row_count++] = (band_row){.y = s->y, .x = x, .count = n};
         b->count += n;
-        piece.x0 += n;
-        for (int c = 0; c < 3 && piece.x0 < s->x1; c++)
-            piece.a[c] += n * slice->plane.step_u[c];
         if (b->count == FUSED_BATCH)
             flush(b);
     }

@@ -143,12 +143,40 @@ static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, in
     }
 }
 
+/* Where nothing but lines matters: no picture, and each fragment writes its pixel back. */
+static void count_span(pipeline *p, int32_t k, const span *s)
+{
+    const fb_layout layout = p->memory.layout;
+    const int64_t row = p->line_row;
+    const int32_t width_bits = layout.line_w_bits;
+    int32_t counted = s->x0; /* up to here the clock knows */
+    for (int32_t x = s->x0, end; x < s->x1; x = end) {
+        end = ((x >> width_bits) + 1) << width_bits;
+        end = end < s->x1 ? end : s->x1;
+        if (pixel_cache_hit(&p->cache, line_in_row(&layout, row, x), end - x)) {
+            pixel_cache_written(&p->cache);
+            continue;
+        }
+        if (p->clock && x > counted)
+            cycles_hits(p->clock, counted, s->y, x - counted, false);
+        blend_run(p, k, s, x - s->x0, end - s->x0);
+        counted = end;
+    }
+    if (p->clock && s->x1 > counted)
+        cycles_hits(p->clock, counted, s->y, s->x1 - counted, false);
+}
+
 static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
 {
     int32_t count = s->x1 - s->x0;
     p->counters.fragments += (uint64_t)count;
-    p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
     p->line_row = line_row(&p->memory.layout, s->y);
+    if (p->texture.whole)
+        p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
+    if (p->lines_only) {
+        count_span(p, slice->k, s);
+        return;
+    }
     if (p->picture)
         shade_span(p, slice, s);
     for (int32_t from = 0, to; from < count; from = to) {
@@ -216,7 +244,7 @@ static void draw_slice(pipeline *p, const candidate *c, const brick_slice *slice
 {
     rasterizer rows;
     rasterizer_start(&rows, slice, &c->bound);
-    int32_t first_row = rows.y, next_row = rows.y;
+    int32_t first_row = rows.bound.y0, next_row = first_row;
     bool visited = covered->slices > 0, any = false;
     if (visited && p->clock)
         cycles_slice(p->clock);
@@ -312,6 +340,8 @@ vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_
                            const vodr_view *view, bool picture, bool clock, vodr_error *error)
 {
     *p = (pipeline){.machine = machine, .view = view, .picture = picture};
+    p->lines_only = !picture && machine->blend == VODR_BLEND_OVER && !machine->kill_transparent &&
+                    machine->write_policy == VODR_WRITE_POLICY_BACK;
     vodr_status status = pipeline_check(machine, volume, view, error);
     if (status == VODR_OK)
         status = start_blocks(p, volume, table, error);

@@ -15,6 +15,7 @@ typedef struct pipeline {
     const vodr_machine *machine;
     const vodr_view *view;
     bool picture;
+    bool lines_only; /* without a picture: all fragments write their pixels, and lines alone matter */
     volume_divider divider;
     texture_unit texture;
     alpha_blender blender;

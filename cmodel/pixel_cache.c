@@ -103,26 +103,15 @@ static void fill(pixel_cache *c, cache_line *line, int64_t number)
 
 vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count)
 {
-    c->clock++;
-    int32_t at = c->where[line];
-    c->missed = at < 0;
-    c->hits += (uint64_t)count - (at < 0);
-    if (at < 0) {
+    if (!pixel_cache_hit(c, line, count)) {
+        c->clock++;
+        c->missed = true;
         c->misses++;
-        cache_line *victim = choose_victim(c, c->lines + (size_t)set_of(c, line) * (size_t)c->ways);
-        fill(c, victim, line);
-        at = (int32_t)(victim - c->lines);
+        c->hits += (uint64_t)count - 1;
+        c->last = choose_victim(c, c->lines + (size_t)set_of(c, line) * (size_t)c->ways);
+        fill(c, c->last, line);
     }
-    cache_line *found = &c->lines[at];
-    if (c->replacement == VODR_REPLACEMENT_LRU)
-        found->stamp = c->clock;
-    c->last = found;
-    return pixels_of(c, found);
-}
-
-void pixel_cache_written(pixel_cache *c)
-{
-    c->last->dirty = !c->through;
+    return pixels_of(c, c->last);
 }
 
 void pixel_cache_flush(pixel_cache *c)
