@@ -52,15 +52,13 @@ static void clock_run(pipeline *p, const span *s, int32_t from, int32_t to, int6
     if (!c->missed && !c->through)
         cycles_hits(p->clock, x, s->y, count, false);
     else
-        cycles_access(p->clock, &(cycle_run){.x = x,
-                                             .y = s->y,
-                                             .count = count,
-                                             .written = written,
-                                             .miss = c->missed,
-                                             .reads = c->missed && c->read,
-                                             .evicts = c->missed && c->evicted_dirty,
-                                             .line = line,
-                                             .victim = c->victim});
+        cycles_run(p->clock, x, s->y, count,
+                   &(cycle_access){.line = (int32_t)line,
+                                   .victim = (int32_t)c->victim,
+                                   .written = written,
+                                   .miss = c->missed,
+                                   .reads = c->missed && c->read,
+                                   .evicts = c->missed && c->evicted_dirty});
 }
 
 /* Blends a run; the bits of the pixels written. Which ones they are matters to a write-through cache's clock alone:
