@@ -8,6 +8,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "error.h"
 #include "layout.h"
@@ -238,6 +239,31 @@ bool volume_divider_next(volume_divider *d, candidate *c)
         d->left = advance(d, level) || next_tile(d);
     }
     return false;
+}
+
+static void *copy_of(const void *items, size_t bytes)
+{
+    void *copy = items ? malloc(bytes) : NULL;
+    if (copy)
+        memcpy(copy, items, bytes);
+    return copy;
+}
+
+vodr_status volume_divider_split(volume_divider *d, int32_t y_px, volume_divider *other, vodr_error *error)
+{
+    size_t total = 1;
+    bool good = true;
+    *other = *d;
+    for (int c = 0; c < 3; c++) {
+        other->order[c] = copy_of(d->order[c], (size_t)d->bricks[c] * sizeof *d->order[c]);
+        good &= other->order[c] != NULL;
+        total *= (size_t)d->bricks[c];
+    }
+    other->empty = copy_of(d->empty, total);
+    if (!good || (d->empty && !other->empty))
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for the order of %zu bricks", total);
+    other->window.y0 = other->tile.y0 = d->window.y1 = d->tile.y1 = y_px;
+    return VODR_OK;
 }
 
 double volume_divider_done(const volume_divider *d)

@@ -51,6 +51,10 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
 /* The next candidate in visibility order; false after the last, and from then on. */
 bool volume_divider_next(volume_divider *d, candidate *c);
 
+/* Cuts the window in two while it is walked over, in an order without tiles: `other`, which is new, goes on from the
+ * same brick over the rows from y_px on, and `d` over those above. Free `other` in either case. */
+vodr_status volume_divider_split(volume_divider *d, int32_t y_px, volume_divider *other, vodr_error *error);
+
 /* How far the walk is, 0 to 1. */
 double volume_divider_done(const volume_divider *d);
 
