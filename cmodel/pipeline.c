@@ -197,8 +197,8 @@ static void grow(px_rect *r, const span *s)
 /* Cycles of the divider since the visit before. */
 static int64_t divider_work(pipeline *p)
 {
-    int64_t work = p->candidates * p->machine->brick_setup_cycles + p->probed_rows;
-    p->candidates = p->probed_rows = 0;
+    int64_t work = volume_divider_work(&p->divider) + p->probed_rows;
+    p->probed_rows = 0;
     return work;
 }
 
@@ -273,7 +273,6 @@ static void draw_candidate(pipeline *p, const candidate *c)
         slice_generator_start(p->view, &c->box, c->k0, c->k1, p->machine->blend == VODR_BLEND_UNDER);
     footprint covered = {.px = {INT32_MAX, INT32_MAX, 0, 0}};
     brick_slice slice;
-    p->candidates++;
     for (int32_t index = 0; slice_generator_next(&slices, &slice); index++)
         draw_slice(p, c, &slice, index, &covered);
     p->counters.brick_slices += covered.slices;
