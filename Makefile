@@ -18,9 +18,10 @@ LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
 
 HW       := hw/parameters.txt hw/registers.txt
 MACHINES := $(sort $(wildcard hw/machines/*.txt))
-GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh
+GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh $(BUILD)/gen/energy_text.c
 CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vodr_hw.o
-HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c)))
+HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
+            $(BUILD)/gen/energy_text.o
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
@@ -116,6 +117,10 @@ $(BUILD)/gen/vodr_hw.c: $(BUILD)/generate $(HW) $(MACHINES)
 $(BUILD)/gen/vodr_hw.vh: $(BUILD)/generate $(HW) $(MACHINES)
 	@mkdir -p $(@D)
 	$(BUILD)/generate verilog $(HW) $(MACHINES) > $@.tmp && mv $@.tmp $@
+
+$(BUILD)/gen/energy_text.c: $(BUILD)/generate hw/energy.txt
+	@mkdir -p $(@D)
+	$(BUILD)/generate c-text hw_energy_text hw/energy.txt > $@.tmp && mv $@.tmp $@
 
 $(BUILD)/gen/%.o: $(BUILD)/gen/%.c
 	$(COMPILE) -c -o $@ $<

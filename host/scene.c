@@ -35,6 +35,8 @@ static host_status fill(scene *s, const char *path, const view_options *o, host_
 {
     host_status status = view_options_machine(o, &s->machine, error);
     if (status == HOST_OK)
+        status = energy_open(o->energy, &s->energy, error);
+    if (status == HOST_OK)
         status = volume_open(path, &o->volume, &s->volume, error);
     if (status != HOST_OK)
         return status;
