@@ -187,15 +187,13 @@ static json_int_t whole_pj(double pj)
 
 json_t *costs_json(const costs *c)
 {
-    json_t *energy =
-        json_pack("{s:I, s:I, s:I, s:I, s:I, s:I}", "total", whole_pj(costs_energy_pj(c)), "offchip",
-                  whole_pj(c->offchip_pj), "cache", whole_pj(c->cache_pj), "texture", whole_pj(c->texture_pj), "table",
-                  whole_pj(c->table_pj), "arithmetic", whole_pj(c->arithmetic_pj));
-    json_t *bits = json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "total", (json_int_t)costs_onchip_bits(c),
-                             "cache_data", (json_int_t)c->cache_data_bits, "cache_tag", (json_int_t)c->cache_tag_bits,
-                             "texture", (json_int_t)c->texture_bits, "table", (json_int_t)c->table_bits, "fifo",
-                             (json_int_t)c->fifo_bits, "touch", (json_int_t)c->touch_bits);
-    return json_pack("{s:I, s:I, s:I, s:o, s:o}", "fb_bytes", (json_int_t)c->fb_bytes, "texture_bytes",
-                     (json_int_t)c->texture_bytes, "offchip_bytes", (json_int_t)costs_offchip_bytes(c), "energy_pj",
-                     energy, "onchip_bits", bits);
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "fb_bytes",
+                     (json_int_t)c->fb_bytes, "texture_bytes", (json_int_t)c->texture_bytes, "offchip_bytes",
+                     (json_int_t)costs_offchip_bytes(c), "energy_pj", whole_pj(costs_energy_pj(c)), "offchip_pj",
+                     whole_pj(c->offchip_pj), "cache_pj", whole_pj(c->cache_pj), "texture_pj", whole_pj(c->texture_pj),
+                     "table_pj", whole_pj(c->table_pj), "arithmetic_pj", whole_pj(c->arithmetic_pj), "onchip_bits",
+                     (json_int_t)costs_onchip_bits(c), "cache_data_bits", (json_int_t)c->cache_data_bits,
+                     "cache_tag_bits", (json_int_t)c->cache_tag_bits, "texture_bits", (json_int_t)c->texture_bits,
+                     "table_bits", (json_int_t)c->table_bits, "fifo_bits", (json_int_t)c->fifo_bits, "touch_bits",
+                     (json_int_t)c->touch_bits);
 }

@@ -28,8 +28,8 @@ uint64_t costs_offchip_bytes(const costs *c);
 uint64_t costs_onchip_bits(const costs *c);
 double costs_energy_pj(const costs *c);
 
-/* {"fb_bytes", "texture_bytes", "offchip_bytes", "energy_pj": {"total", ...}, "onchip_bits": {"total", ...}}, energies
- * rounded to whole pJ; NULL when memory is out. */
+/* An object of these, their sums offchip_bytes, energy_pj and onchip_bits beside them, energies rounded to whole pJ;
+ * NULL when memory is out. */
 json_t *costs_json(const costs *c);
 
 #endif

@@ -25,7 +25,7 @@ typedef struct view_options {
     machine_override *overrides;
     size_t override_count;
     const char *energy; /* a file; NULL: hw/energy.txt */
-    int32_t threads; /* 0 = all cores */
+    int32_t threads;    /* 0 = all cores */
     vodr_path path;
     vodr_simd simd;
     bool cycles; /* count cycles too */
