@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "vodr.h"
 
-static const command *const commands[] = {&command_render, &command_report, &command_compare, &command_info,
+static const command *const commands[] = {&command_render, &command_report, &command_sweep, &command_compare, &command_info,
                                           &command_machine};
 
 enum { COMMANDS = sizeof commands / sizeof *commands };

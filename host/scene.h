@@ -29,4 +29,11 @@ typedef struct scene {
 host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error);
 void scene_close(scene *s);
 
+/* The window: as given, else the transfer function's own for a CT in Hounsfield units, else the data's range. */
+void scene_window(const view_options *o, const transfer *t, bool ct, double min, double max, double *lo, double *hi);
+
+/* The machine's table for slices so far apart; free() the entries. */
+host_status scene_table(const vodr_machine *m, const transfer *t, double lo, double hi, double depth_vox,
+                        vodr_rgba **entries, vodr_table *made, host_error *error);
+
 #endif
