@@ -7,7 +7,7 @@
 #include "gnuplot.h"
 #include "sweep_plot.h"
 
-enum { COLOURS = 8, MOST_LABELS = 10, MOST_CELL_TEXTS = 150, LABEL_CHARS = 160, LONG_AXIS = 12 };
+enum { COLOURS = 8, MOST_LABELS = 20, MOST_CELL_TEXTS = 150, LABEL_CHARS = 160, LONG_AXIS = 12 };
 
 static const char *const colours[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                              "#E69F00", "#56B4E9", "#000000", "#8C8C00"};
@@ -74,12 +74,16 @@ static void axis_label(const plot *p, size_t axis, char text[LABEL_CHARS])
     }
 }
 
-/* A value of an axis in short: files without their directories. */
+/* A value of an axis in short: numbers as such, files without their directories. */
 static void value_label(const plot *p, size_t axis, size_t index, char text[LABEL_CHARS])
 {
     const sweep_axis *a = &p->plan->axes[axis];
     size_t used = 0;
     text[0] = '\0';
+    if (sweep_plot_is_numeric(p->plan, axis)) {
+        snprintf(text, LABEL_CHARS, "%.10g", sweep_plot_number(p->plan, axis, index));
+        return;
+    }
     for (size_t i = 0; i < a->names; i++) {
         const char *value = a->values[index * a->names + i], *slash = strrchr(value, '/');
         int n = snprintf(text + used, LABEL_CHARS - used, "%s%s", i ? " " : "", slash ? slash + 1 : value);
@@ -165,9 +169,9 @@ static void put_title(const plot *p)
 
 static void put_frame(const plot *p)
 {
-    fputs("set terminal svg size 900,560 dynamic noenhanced font 'sans,14' background 'white'\n"
+    fputs("set terminal svg size 960,560 dynamic noenhanced font 'sans,14' background 'white'\n"
           "set datafile missing 'NaN'\nset border 3\nset tics nomirror out\nset grid ytics lc rgb '#d0d0d0'\n"
-          "set lmargin 12\nset rmargin 4\n",
+          "set lmargin 12\n",
           p->script);
 }
 
@@ -236,6 +240,22 @@ static double put_axes(const plot *p)
     return scale;
 }
 
+/* From the first value to the last; a turn in quarters and eighths. */
+static void put_x_range(const plot *p)
+{
+    double least = HUGE_VAL, largest = -HUGE_VAL;
+    for (size_t x = 0; x < p->xs; x++) {
+        const double value = sweep_plot_number(p->plan, p->choice->across, x);
+        least = fmin(least, value);
+        largest = fmax(largest, value);
+    }
+    if (least < largest)
+        fprintf(p->script, "set xrange [%.10g:%.10g]\n", least, largest);
+    if (sweep_plan_find(p->plan, "view") < p->plan->name_count && largest - least >= 180 && largest - least <= 360 &&
+        p->plan->names[sweep_plan_find(p->plan, "view")].axis == p->choice->across)
+        fputs("set xtics 45\n", p->script);
+}
+
 static void put_line(const plot *p)
 {
     const double scale = put_axes(p);
@@ -246,7 +266,7 @@ static void put_line(const plot *p)
             fprintf(p->script, "%s%.10g", x ? ", " : "", sweep_plot_number(p->plan, p->choice->across, x));
         fputs(")\n", p->script);
     }
-    fputs("set offsets graph 0.02, graph 0.02, graph 0.04, 0\n", p->script);
+    put_x_range(p);
     for (size_t s = 0; s < p->series; s++) {
         fprintf(p->script, "%s$data using 1:%zu with linespoints lw 2 ps %s lc rgb '%s' pt %d dt %zu",
                 s ? ", " : "plot ", s + 2, p->xs > LONG_AXIS ? "0.5" : "0.9", colours[s % COLOURS], points[s % COLOURS],
@@ -331,8 +351,37 @@ static void point_label(const plot *p, uint64_t point, char text[LABEL_CHARS])
         if (p->plan->axes[a].count < 2)
             continue;
         value_label(p, a, sweep_plan_index(p->plan, a, point), value);
-        int n = snprintf(text + used, LABEL_CHARS - used, "%s%s", used ? " " : "", value);
+        int n = snprintf(text + used, LABEL_CHARS - used, "%s%s", used ? "  " : "", value);
         used = used + (size_t)n < LABEL_CHARS ? used + (size_t)n : LABEL_CHARS - 1;
+    }
+}
+
+static void put_label(const plot *p, const char *text, int row)
+{
+    fputs("set label ", p->script);
+    gnuplot_quote(p->script, text);
+    fprintf(p->script, " at graph 1.03, graph %.3f left font ',11'\n", 0.97 - 0.048 * row);
+}
+
+/* The points of the front by number, beside the plot; how they are called, on top. */
+static void put_front_list(const plot *p)
+{
+    char text[LABEL_CHARS + 16] = "";
+    int number = 0, row = 0;
+    fputs("set rmargin 38\n", p->script);
+    for (size_t i = 0; i < p->plan->name_count; i++) {
+        const size_t used = strlen(text);
+        if (p->plan->axes[p->plan->names[i].axis].count > 1 && used < sizeof text)
+            snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "", p->plan->names[i].name);
+    }
+    put_label(p, text, row++);
+    for (uint64_t i = 0; i < p->rows->count; i++) {
+        char label[LABEL_CHARS];
+        if (!p->rows->marks[i])
+            continue;
+        point_label(p, i, label);
+        snprintf(text, sizeof text, "%d:  %s", ++number, label);
+        put_label(p, text, ++row);
     }
 }
 
@@ -361,30 +410,33 @@ static void put_pareto(const plot *p)
     snprintf(title, sizeof title, "%llu points, %llu of them on the front%s", (unsigned long long)p->rows->count,
              (unsigned long long)p->rows->front, p->objectives->count > 2 ? " of more objectives than these two" : "");
     set(p, "title", title);
-    fputs("set grid xtics ytics lc rgb '#d0d0d0'\nset key outside bottom center horizontal\n"
-          "set offsets graph 0.02, graph 0.12, graph 0.06, graph 0.02\n",
+    const bool listed = p->rows->front <= MOST_LABELS;
+    int number = 0;
+    fputs("set grid xtics ytics lc rgb '#d0d0d0'\nset key outside top center horizontal\n"
+          "set offsets graph 0.04, graph 0.04, graph 0.06, graph 0.06\n",
           p->script);
+    if (listed)
+        put_front_list(p);
     for (int front = 0; front < 2; front++) {
         fprintf(p->script, "$%s << EOD\n", front ? "front" : "beaten");
         for (uint64_t i = 0; i < p->rows->count; i++) {
-            char label[LABEL_CHARS];
             const double *v = p->rows->values + i * p->values;
             if (p->rows->marks[i] != (front == 1) || isnan(v[0]) || isnan(v[1]))
                 continue;
-            point_label(p, i, label);
-            fprintf(p->script, "%.10g %.10g ", v[0] / x_scale, v[1] / y_scale);
-            put_datum(p->script, label);
-            putc('\n', p->script);
+            number += front;
+            fprintf(p->script, "%.10g %.10g %d\n", v[0] / x_scale, v[1] / y_scale, number);
         }
-        fputs("NaN NaN \"\"\nEOD\n", p->script);
+        fputs("NaN NaN 0\nEOD\n", p->script);
     }
     fputs("plot $beaten using 1:2 with points pt 7 ps 0.5 lc rgb '#999999' title 'beaten by another', "
           "$front using 1:2 with points pt 5 ps 1 lc rgb '#D55E00' title 'Pareto front'",
           p->script);
     if (p->objectives->count == 2)
         fputs(", $front using 1:2 smooth unique with lines lw 1.5 lc rgb '#D55E00' notitle", p->script);
-    if (p->rows->front <= MOST_LABELS)
-        fputs(", $front using 1:2:3 with labels left offset 0.8,0.6 font ',11' notitle", p->script);
+    if (listed)
+        fputs(", $front using 1:(int($3) % 2 ? $2 : NaN):3 with labels left offset 0.6,0.7 font ',12' notitle"
+              ", $front using 1:(int($3) % 2 ? NaN : $2):3 with labels right offset -0.6,-0.7 font ',12' notitle",
+              p->script);
     putc('\n', p->script);
 }
 
