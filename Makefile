@@ -32,7 +32,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep contact-sheet fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -69,6 +69,10 @@ contact-sheet: $(BUILD)/vodr ## draw every real volume at hand into build/contac
 bench-model: $(BUILD)/vodr ## measure the model beside a software rasterizer, and write its table in the README again
 	@scripts/tables $(BUILD) model
 	@cat $(BUILD)/tables/model
+
+bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
+	@scripts/tables $(BUILD) sweep
+	@cat $(BUILD)/tables/sweep
 
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr

@@ -56,10 +56,10 @@ static const option rows[] = {
      "columns, a row a point. Where it is there already, the\n"
      "same sweep goes on: what has a row is not drawn again"},
     {"over", 0, "PARAM=V1,V2,...", true, add_axis,
-     "what varies: a parameter of the machine, or volume, view,\n"
-     "projection, zoom, size, slices, tf, window, crop, machine;\n"
-     "of several, all combinations. view=orbit:N[:EL] is N views\n"
-     "around; values with commas of their own are parted by ';':\n"
+     "what varies: volume, view, projection, zoom, size, slices,\n"
+     "tf, window, crop, machine or a parameter of the machine;\n"
+     "given several times: all combinations. view=orbit:N[:EL] is\n"
+     "N views around. Values that hold commas are parted by ';':\n"
      "view='0,0;30,30'"},
     {"list", 0, "FILE", false, set_list,
      "points from a file: a line of such names, then a line of\n"
