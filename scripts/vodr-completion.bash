@@ -26,6 +26,7 @@ _vodr_values() {
 # What a sweep may vary; the values of name $3 of them, where they are words.
 _vodr_axes() {
     _vodr_words "$1" "$2" --over
+    echo
     _vodr_parameters "$1"
 }
 _vodr_axis_values() {

@@ -71,7 +71,7 @@ values() { # PARAMETER
     offers 'render --set ' $parameters
     offers 'report volume.nrrd --set=' $parameters
     offers 'sweep volume.nrrd --over ' $axes $parameters
-    offers 'sweep --over traversal=tile,' $(values traversal | tr ' ' '\n' | sed 's/^/tile,/')
+    offers 'sweep --over traversal=tile,' $(values traversal | tr ' ' '\n' | sed -n 's/^./tile,&/p')
     offers 'sweep --over=machine=' $machines
     offers 'render --set fb_layout=' $(values fb_layout)
     offers 'render --blend=' $(values blend)
