@@ -54,7 +54,8 @@ static const option rows[] = {
     {"output", 'o', "OUT.csv", false, set_path,
      "the table; it must be given. '#' lines of JSON, a line of\n"
      "columns, a row a point. Where it is there already, the\n"
-     "same sweep goes on: what has a row is not drawn again"},
+     "same sweep goes on: what has a row is not drawn again. Any\n"
+     "number of processes (mpirun) may fill it together"},
     {"over", 0, "PARAM=V1,V2,...", true, add_axis,
      "what varies: volume, view, projection, zoom, size, slices,\n"
      "tf, window, crop, machine or a parameter of the machine;\n"
