@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "costs.h"
@@ -130,7 +131,8 @@ static void draw_in_child(const char *path, const sweep_plan *p, bool dies)
         char line[32];
         good = sweep_file_claim(&f, &point, &more, &error) == HOST_OK;
         if (dies && i == 3)
-            _exit(0); /* with a claim, as if killed */
+            _exit(0);                                            /* with a claim, as if killed */
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL); /* another's chance to draw the same point */
         snprintf(line, sizeof line, "%d,x\n", (int)point);
         if (good && more)
             good = sweep_file_append(&f, point, line, &error) == HOST_OK;
