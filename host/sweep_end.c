@@ -11,8 +11,6 @@
 #include "output.h"
 #include "text.h"
 
-enum { FIELDS = 256 };
-
 /* A second stream on the file would give back this process's locks when closed: the end reads with pread() alone. */
 typedef struct reader {
     const sweep_file *file;
@@ -54,8 +52,8 @@ static host_status read_line(reader *r, off_t at, off_t *next, host_error *error
 /* Its column `refused` is the last but one. */
 static void take_row(sweep_rows *r, char *line, size_t fields, off_t at, const size_t *columns, size_t count)
 {
-    char *values[FIELDS];
-    csv_split(line, values, FIELDS);
+    char *values[SWEEP_MAX_COLUMNS];
+    csv_split(line, values, SWEEP_MAX_COLUMNS);
     const size_t point = (size_t)strtoull(values[0], NULL, 10);
     r->at[point] = at;
     r->refused += values[fields - 2][0] != '\0';

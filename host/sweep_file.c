@@ -15,7 +15,7 @@
 
 enum { FREE, CLAIMED, DONE };
 
-enum { CHUNK_BYTES = 1 << 16, WAIT_MS = 20, MAX_COLUMNS = 256 };
+enum { CHUNK_BYTES = 1 << 16, WAIT_MS = 20, MAX_OBJECTIVE_BYTES = 4096 };
 
 /* Bytes that locks stand for; no file grows so long. */
 static const off_t append_byte = (off_t)1 << 60, first_claim_byte = ((off_t)1 << 60) + 1;
@@ -60,9 +60,9 @@ static host_status damaged(const sweep_file *f, off_t at, host_error *error)
 /* A row without its line break, which is changed. */
 static host_status take_row(sweep_file *f, char *line, off_t at, host_error *error)
 {
-    char *fields[MAX_COLUMNS];
+    char *fields[SWEEP_MAX_COLUMNS];
     int64_t point;
-    size_t count = csv_split(line, fields, MAX_COLUMNS);
+    size_t count = csv_split(line, fields, SWEEP_MAX_COLUMNS);
     if (count != f->fields || !text_integer(fields[0], 0, (int64_t)f->plan->points - 1, &point))
         return damaged(f, at, error);
     f->done += f->state[point] != DONE;
@@ -203,46 +203,52 @@ host_status sweep_file_claim(sweep_file *f, uint64_t *point, bool *more, host_er
 
 /* ---- opening ---- */
 
-static host_status refuse_other(const sweep_file *f, host_error *error)
+static bool begins_with(const char *text, const char *beginning)
 {
-    return host_fail(error, HOST_BAD_INPUT,
-                     "'%s' is there and is not of this sweep: name another output, or remove it to begin anew",
-                     f->path);
+    return strncmp(text, beginning, strlen(beginning)) == 0;
 }
 
-/* Whether the file begins as it must: *fresh when it is empty, or a killed process did not get further than its head.
- */
+/* Where rows begin in a file that begins like this; 0: a killed process did not get further than its head; -1: it is of
+ * something else. */
+static off_t find_rows(const sweep_file *f, const char *there)
+{
+    const char *const parts[] = {f->head, SWEEP_OBJECTIVE_LINE};
+    const char *at = there;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        if (begins_with(parts[i], at))
+            return 0;
+        if (!begins_with(at, parts[i]))
+            return -1;
+        at += strlen(parts[i]);
+    }
+    at = strchr(at, '\n');
+    if (!at)
+        return 0;
+    if (begins_with(++at, f->columns))
+        return at - there + (off_t)strlen(f->columns);
+    return begins_with(f->columns, at) ? 0 : -1;
+}
+
+/* *fresh: the file is empty or as good as that. */
 static host_status compare_head(sweep_file *f, bool *fresh, host_error *error)
 {
-    const size_t objective = strlen(SWEEP_OBJECTIVE_LINE), most = f->head_bytes + 4096 + strlen(f->columns);
+    const size_t most = f->head_bytes + MAX_OBJECTIVE_BYTES + strlen(f->columns);
     char *there = malloc(most + 1);
     if (!there)
         return host_fail(error, HOST_ENVIRONMENT, "no memory to read '%s'", f->path);
     ssize_t n = pread(f->descriptor, there, most, 0);
     there[n > 0 ? n : 0] = '\0';
-    char *line = there + f->head_bytes;
-    size_t same = 0;
-    while (there[same] && same < f->head_bytes && there[same] == f->head[same])
-        same++;
-    host_status status = HOST_OK;
-    *fresh = n == (ssize_t)same && same < f->head_bytes;
-    if (n < 0)
-        status = host_fail(error, HOST_ENVIRONMENT, "cannot read '%s': %s", f->path, strerror(errno));
-    else if (!*fresh && (same < f->head_bytes ||
-                         strncmp(line, SWEEP_OBJECTIVE_LINE, strlen(line) < objective ? strlen(line) : objective) != 0))
-        status = refuse_other(f, error);
-    char *columns = !*fresh && status == HOST_OK ? strchr(line, '\n') : NULL;
-    if (!*fresh && status == HOST_OK) {
-        const size_t have = columns ? strlen(columns + 1) : 0, want = strlen(f->columns);
-        if (have < want)
-            *fresh = !columns || strncmp(columns + 1, f->columns, have) == 0;
-        if (!*fresh && (have < want || strncmp(columns + 1, f->columns, want) != 0))
-            status = refuse_other(f, error);
-        else if (!*fresh)
-            f->rows_at = f->read_bytes = (off_t)(columns + 1 - there) + (off_t)want;
-    }
+    const bool text = n > 0 ? strlen(there) == (size_t)n : n == 0;
+    f->rows_at = f->read_bytes = text ? find_rows(f, there) : -1;
+    *fresh = f->rows_at == 0;
     free(there);
-    return status;
+    if (n < 0)
+        return host_fail(error, HOST_ENVIRONMENT, "cannot read '%s': %s", f->path, strerror(errno));
+    if (f->rows_at >= 0)
+        return HOST_OK;
+    return host_fail(error, HOST_BAD_INPUT,
+                     "'%s' is there and is not of this sweep: name another output, or remove it to begin anew",
+                     f->path);
 }
 
 static host_status write_head(sweep_file *f, host_error *error)
@@ -291,7 +297,7 @@ host_status sweep_file_open(sweep_file *f, const char *path, char *head, char *c
                       .fields = fields,
                       .turn = first_turn,
                       .state = calloc(plan->points, 1)};
-    if (!f->state || fields > MAX_COLUMNS || pthread_mutex_init(&f->lock, NULL) != 0)
+    if (!f->state || fields > SWEEP_MAX_COLUMNS || pthread_mutex_init(&f->lock, NULL) != 0)
         return host_fail(error, HOST_ENVIRONMENT, "no memory for the sweep's points");
     host_status status = open_descriptor(f, error);
     if (status == HOST_OK)

@@ -14,6 +14,8 @@
 #include "host.h"
 #include "sweep_plan.h"
 
+enum { SWEEP_MAX_COLUMNS = 256 };
+
 typedef struct sweep_file {
     const char *path;
     int descriptor;

@@ -253,6 +253,10 @@ kills=0
     bad 2 "'long.csv' is there and is not of this sweep" "$vodr" sweep $raw --over ways=1,2 -o long.csv
     echo 'my notes' >notes.txt
     bad 2 "'notes.txt' is there and is not of this sweep" "$vodr" sweep $raw --over ways=1,2 -o notes.txt
+    head -c 4096 /dev/zero >zeros.bin
+    bad 2 "'zeros.bin' is there and is not of this sweep" "$vodr" sweep $raw --over ways=1,2 -o zeros.bin
+    printf '# {\n' >head.txt
+    good "the beginning of a head is gone over" "$vodr" sweep $raw --over ways=1,2 -o head.txt
     sed '$s/^/x/' long.csv >damaged.csv
     bad 2 "there is no row of it" "$vodr" sweep $raw $long -o damaged.csv
     bad 2 "'v.raw' is read by this command" "$vodr" sweep $raw --over ways=1,2 -o v.raw
