@@ -1,6 +1,6 @@
-/* fused_band.h - rows of the frame while they are drawn: by one thread at a time, brick after brick in visibility
- * order, so that every pixel meets its fragments in the machine's order. Between two bricks a band can be cut in two.
- */
+/* fused_band.h - rows of the frame while they are drawn, with their place in the order of bricks (fuses volume_divider
+ * and frame_buffer): one thread at a time draws brick after brick in visibility order, so that every pixel meets its
+ * fragments in the machine's order. Between two bricks a band can be cut in two. */
 #ifndef VODR_FUSED_BAND_H
 #define VODR_FUSED_BAND_H
 
