@@ -44,21 +44,32 @@ static uint32_t written_by_marks(pipeline *p, int32_t k, int32_t y, int32_t x, i
     return written;
 }
 
-/* Tells the clock of a run that was just blended; bit i of `written`: whether its fragment i wrote. */
+/* The last access as the clock sees it; bit i of `written`: whether fragment i of its run wrote. */
+static cycle_access last_access(const pixel_cache *c, int64_t line, uint32_t written)
+{
+    return (cycle_access){.line = (int32_t)line,
+                          .victim = (int32_t)c->victim,
+                          .written = written,
+                          .miss = c->missed,
+                          .reads = c->missed && c->read,
+                          .evicts = c->missed && c->evicted_dirty};
+}
+
+/* Tells the clock of fragments that were just blended. */
 static void clock_run(pipeline *p, const span *s, int32_t from, int32_t to, int64_t line, uint32_t written)
 {
-    const pixel_cache *c = &p->cache;
+    const cycle_access access = last_access(&p->cache, line, written);
     int32_t x = s->x0 + from, count = to - from;
-    if (!c->missed && !c->through)
+    if (!access.miss && !p->cache.through)
         cycles_hits(p->clock, x, s->y, count, false);
     else
-        cycles_run(p->clock, x, s->y, count,
-                   &(cycle_access){.line = (int32_t)line,
-                                   .victim = (int32_t)c->victim,
-                                   .written = written,
-                                   .miss = c->missed,
-                                   .reads = c->missed && c->read,
-                                   .evicts = c->missed && c->evicted_dirty});
+        cycles_run(p->clock, x, s->y, count, &access);
+}
+
+static void observe_miss(const pipeline *p, int32_t x, int32_t y)
+{
+    if (p->observer && p->observer->miss)
+        p->observer->miss(p->observer->context, x, y);
 }
 
 /* Blends a run; the bits of the pixels written. Which ones they are matters to a write-through cache's clock alone:
@@ -81,10 +92,9 @@ static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32
     uint32_t written;
     int64_t line = line_in_row(&p->memory.layout, p->line_row, x);
     int32_t offset = p->picture ? line_offset(&p->memory.layout, x, s->y) : 0;
-    uint64_t misses = p->cache.misses;
     vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count);
-    if (p->observer && p->observer->miss && p->cache.misses != misses)
-        p->observer->miss(p->observer->context, x, s->y);
+    if (p->cache.missed)
+        observe_miss(p, x, s->y);
     if (p->picture) {
         pixels += offset;
         written = blend_pixels(p, p->fragments + from, count, pixels);
@@ -141,27 +151,39 @@ static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, in
     }
 }
 
+/* Tells the clock of pixels [x0, x1): all hit, but where the first missed. */
+static void clock_pixels(pipeline *p, int32_t y, int32_t x0, int32_t x1, const cycle_access *first)
+{
+    if (!p->clock || x0 == x1)
+        return;
+    if (first->miss)
+        cycles_run(p->clock, x0, y, x1 - x0, first);
+    else
+        cycles_hits(p->clock, x0, y, x1 - x0, false);
+}
+
 /* Where nothing but lines matters: no picture, and each fragment writes its pixel back. */
-static void count_span(pipeline *p, int32_t k, const span *s)
+static void count_span(pipeline *p, const span *s)
 {
     const fb_layout layout = p->memory.layout;
     const int64_t row = p->line_row;
     const int32_t width_bits = layout.line_w_bits;
-    int32_t counted = s->x0; /* up to here the clock knows */
+    cycle_access first = {0};
+    int32_t told_to = s->x0;
     for (int32_t x = s->x0, end; x < s->x1; x = end) {
+        int64_t line = line_in_row(&layout, row, x);
         end = ((x >> width_bits) + 1) << width_bits;
         end = end < s->x1 ? end : s->x1;
-        if (pixel_cache_hit(&p->cache, line_in_row(&layout, row, x), end - x)) {
-            pixel_cache_written(&p->cache);
-            continue;
+        if (!pixel_cache_hit(&p->cache, line, end - x)) {
+            clock_pixels(p, s->y, told_to, x, &first);
+            pixel_cache_access(&p->cache, line, end - x);
+            observe_miss(p, x, s->y);
+            first = last_access(&p->cache, line, 0);
+            told_to = x;
         }
-        if (p->clock && x > counted)
-            cycles_hits(p->clock, counted, s->y, x - counted, false);
-        blend_run(p, k, s, x - s->x0, end - s->x0);
-        counted = end;
+        pixel_cache_written(&p->cache);
     }
-    if (p->clock && s->x1 > counted)
-        cycles_hits(p->clock, counted, s->y, s->x1 - counted, false);
+    clock_pixels(p, s->y, told_to, s->x1, &first);
 }
 
 static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
@@ -172,7 +194,7 @@ static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
     if (p->texture.whole)
         p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
     if (p->lines_only) {
-        count_span(p, slice->k, s);
+        count_span(p, s);
         return;
     }
     if (p->picture)
