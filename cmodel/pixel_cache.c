@@ -54,17 +54,13 @@ static vodr_rgba *pixels_of(const pixel_cache *c, const cache_line *line)
     return c->pixels + (size_t)(line - c->lines) * (size_t)c->line_pixels;
 }
 
-/* An invalid way, lowest first; else the policy's choice. */
+/* An invalid way, lowest first, which its stamp makes the oldest; else the policy's choice. */
 static cache_line *choose_victim(pixel_cache *c, cache_line *set)
 {
     cache_line *victim = set;
-    for (int32_t way = 0; way < c->ways; way++) {
-        if (set[way].number < 0)
-            return &set[way];
-        if (set[way].stamp < victim->stamp)
-            victim = &set[way];
-    }
-    if (c->replacement != VODR_REPLACEMENT_RANDOM)
+    for (int32_t way = 1; way < c->ways; way++)
+        victim = set[way].stamp < victim->stamp ? &set[way] : victim;
+    if (c->replacement != VODR_REPLACEMENT_RANDOM || victim->number < 0)
         return victim;
     c->lfsr = (c->lfsr >> 1) ^ (c->lfsr & 1 ? LFSR_TAPS : 0);
     return &set[c->lfsr & (uint32_t)(c->ways - 1)];

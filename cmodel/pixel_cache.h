@@ -7,7 +7,7 @@
 
 typedef struct cache_line {
     int64_t number; /* of the line it holds; -1: none */
-    uint64_t stamp; /* lru: of the last access, fifo: of the fill */
+    uint64_t stamp; /* lru: of the last access, fifo: of the fill; 0: none yet */
     bool dirty;
 } cache_line;
 
