@@ -69,7 +69,6 @@ static bool offer(cycles *c, const cycle_op *op)
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
-    c->last_accept = c->raster - 1;
     c->op_done += (int32_t)length;
     return true;
 }
@@ -126,7 +125,6 @@ static bool glide(cycles *c, const cycle_op *op)
     c->loading = c->slice_starts = false;
     c->accepted += count;
     c->visit_accepted += count;
-    c->last_accept = accept;
     c->raster = accept + 1;
     pop(c, (int32_t)count, cycle);
     c->tag_count += count;
@@ -167,6 +165,6 @@ bool cycles_advance_raster(cycles *c)
         c->op_next++;
     }
     if (c->current >= 0 && !c->eager)
-        visit_at(c, c->current)->drained = c->last_accept;
+        visit_at(c, c->current)->drained = c->raster - 1;
     return moved;
 }
