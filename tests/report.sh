@@ -160,7 +160,7 @@ done
 # shellcheck disable=SC2086
 page 'the clocked machine' clocked.html "$vodr" report 'a volume.raw' $view --path clocked -o clocked.html
 block a.html report >../fast.page
-block clocked.html report >../clocked.page
+block clocked.html report | sed 's/ --path clocked//; s/clocked\.html/a.html/' >../clocked.page
 same 'the clocked machine tells the same visits and misses' ../clocked.page ../fast.page
 equal 'all draw the same frame' "$(block a.html report | grep -o '"same_frame":[a-z]*' | sort -u)" '"same_frame":true'
 parameters=$("$vodr" machine show paper-16 | grep -c ' = ')
