@@ -1,138 +1,242 @@
-/* clocked.c - joins the blocks as pipeline.c does, but cycle by cycle. Whatever a block registers carries the cycle in
- * which it did, and the others see it from the next one on: so the order in which blocks are clocked within a cycle
- * does not matter. */
+/* clocked.c - joins the clocked blocks: wires their ports, and clocks them. All that blocks register lies in two banks:
+ * of one they see what was registered in the cycle before, into the other they write. So the order in which they are
+ * clocked makes no difference. */
 #include "clocked.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-#include "clocked_machine.h"
+#include "clocked_blocks.h"
+#include "clocked_counts.h"
 #include "error.h"
-#include "totals.h"
+#include "frame_buffer.h"
+#include "pixel_word.h"
+#include "texture_unit.h"
+#include "volume_divider.h"
 
-/* Everything drawn, nothing on its way; the divider may still be looking for more bricks in vain. */
-static bool drained(const clocked *c)
+enum { PROGRESS_CYCLES = 1 << 16 };
+
+/* What each block sees of a bank. */
+typedef struct block_ins {
+    volume_divider_in volume_divider;
+    slice_generator_in slice_generator;
+    rasterizer_in rasterizer;
+    texture_unit_in texture_unit;
+    alpha_blender_in alpha_blender;
+    pixel_cache_in pixel_cache;
+    frame_buffer_in frame_buffer;
+    voxel_memory_in voxel_memory;
+} block_ins;
+
+struct clocked {
+    const vodr_machine *machine;
+    const vodr_view *view;
+    texture_unit tables;
+    volume_divider walk;
+    storage storage;
+    block_faces faces;
+    block_outs bank[2];
+    block_ins ins[2];
+    int current; /* the bank that was written last */
+    clocked_counts counts;
+};
+
+/* ---- wires ---- */
+
+static void wire(const block_outs *o, block_ins *i)
 {
-    return c->last_found && c->drawn == c->found && !c->generating && !c->slice_link.full && !c->rastering &&
-           !c->door.count && !c->tagged.count;
+    i->volume_divider = (volume_divider_in){.brick = &o->slice_generator.brick};
+    i->slice_generator = (slice_generator_in){.brick = &o->volume_divider.brick, .slice = &o->rasterizer.slice};
+    i->rasterizer = (rasterizer_in){.slice = &o->slice_generator.slice, .fragment = &o->texture_unit.fragment};
+    i->texture_unit = (texture_unit_in){.brick = &o->volume_divider.brick,
+                                        .fragment = &o->rasterizer.fragment,
+                                        .load = &o->frame_buffer.load,
+                                        .voxels = &o->voxel_memory.voxels,
+                                        .colour = &o->pixel_cache.door};
+    i->alpha_blender = (alpha_blender_in){
+        .colour = &o->texture_unit.colour, .door = &o->pixel_cache.door, .pixel = &o->pixel_cache.pixel};
+    i->pixel_cache = (pixel_cache_in){.colour = &o->texture_unit.colour,
+                                      .blended = &o->alpha_blender.blended,
+                                      .filled = &o->frame_buffer.filled,
+                                      .written = &o->frame_buffer.written,
+                                      .before = {&o->volume_divider.report, &o->slice_generator.report,
+                                                 &o->rasterizer.report, &o->texture_unit.report}};
+    i->frame_buffer =
+        (frame_buffer_in){.fill = &o->pixel_cache.fill, .write = &o->pixel_cache.write, .load = &o->texture_unit.load};
+    i->voxel_memory = (voxel_memory_in){.fetch = &o->texture_unit.fetch};
 }
 
-static void run(clocked *c)
+static void clock_block(block_faces *f, int block, const block_ins *in, block_outs *out)
 {
-    bool going = true;
-    clocked_search(c);
-    for (c->now = 0; going && !c->failed; c->now++) {
-        clock_volume_divider(c);
-        clock_slice_generator(c);
-        clock_rasterizer(c);
-        clock_texture_loader(c);
-        clock_alpha_blender(c);
-        clock_pixel_cache(c);
-        going = !drained(c) || clock_flush(c) || c->write_requests.count || c->work_left;
-        clock_frame_buffer(c);
+#define CLOCK(name) f->name.clock(f->name.state, &in->name, &out->name)
+    switch (block) {
+    case VODR_BLOCK_VOLUME_DIVIDER: CLOCK(volume_divider); break;
+    case VODR_BLOCK_SLICE_GENERATOR: CLOCK(slice_generator); break;
+    case VODR_BLOCK_RASTERIZER: CLOCK(rasterizer); break;
+    case VODR_BLOCK_TEXTURE_UNIT: CLOCK(texture_unit); break;
+    case VODR_BLOCK_ALPHA_BLENDER: CLOCK(alpha_blender); break;
+    case VODR_BLOCK_PIXEL_CACHE: CLOCK(pixel_cache); break;
+    case VODR_BLOCK_FRAME_BUFFER: CLOCK(frame_buffer); break;
+    default: CLOCK(voxel_memory);
     }
+#undef CLOCK
 }
 
-static void gather(clocked *c)
+static bool all_idle(const block_outs *o)
 {
-    totals_close(&c->n, &c->memory, c->last);
-    pixel_cache_flush(&c->cache);
-    vodr_counters *out = &c->counters;
-    out->hits = c->cache.hits;
-    out->misses = c->cache.misses;
-    out->evictions = c->cache.evictions;
-    out->writebacks = c->cache.writebacks;
-    out->fb_read_bytes = c->pixels.read_bytes;
-    out->fb_write_bytes = c->pixels.write_bytes;
-    out->skipped_bricks = c->divider.empty_bricks;
-    out->cycles = c->n;
+    return o->volume_divider.report.idle && o->slice_generator.report.idle && o->rasterizer.report.idle &&
+           o->texture_unit.report.idle && o->alpha_blender.report.idle && o->pixel_cache.report.idle &&
+           o->frame_buffer.report.idle;
 }
 
-static void read_line(void *context, int64_t line, vodr_rgba *pixels)
+bool clocked_step(clocked *c, const uint8_t *order)
 {
-    frame_buffer_read_line(context, line, pixels);
+    const block_outs *before = &c->bank[c->current];
+    block_outs *after = &c->bank[!c->current];
+    for (int i = 0; i < CLOCKED_BLOCKS; i++)
+        clock_block(&c->faces, order ? order[i] : i, &c->ins[c->current], after);
+    clocked_counts_cycle(&c->counts, before, after);
+    c->current = !c->current;
+    return !all_idle(after);
 }
 
-static void write_line(void *context, int64_t line, const vodr_rgba *pixels)
+/* ---- start and end ---- */
+
+static bool make_blocks(const block_setup *s, block_faces *f, block_outs *o)
 {
-    frame_buffer_write_line(context, line, pixels);
+    return clocked_volume_divider(s, &f->volume_divider, &o->volume_divider) &&
+           clocked_slice_generator(s, &f->slice_generator, &o->slice_generator) &&
+           clocked_rasterizer(s, &f->rasterizer, &o->rasterizer) &&
+           clocked_texture_unit(s, &f->texture_unit, &o->texture_unit) &&
+           clocked_alpha_blender(s, &f->alpha_blender, &o->alpha_blender) &&
+           clocked_pixel_cache(s, &f->pixel_cache, &o->pixel_cache) &&
+           clocked_frame_buffer(s, &f->frame_buffer, &o->frame_buffer) &&
+           clocked_voxel_memory(s, &f->voxel_memory, &o->voxel_memory);
 }
 
-static vodr_status start(clocked *c, const vodr_volume *volume, const vodr_table *table, vodr_error *error)
+static vodr_status start(clocked *c, const vodr_volume *volume, const vodr_table *table, const vodr_observer *observer,
+                         vodr_error *error)
 {
-    const vodr_machine *m = c->m;
-    px_rect window = {0, 0, c->view->width_px, c->view->height_px};
+    const vodr_machine *m = c->machine;
+    const px_rect window = {0, 0, c->view->width_px, c->view->height_px};
     int32_t edge = volume_divider_edge(m, c->view);
-    const int32_t edges[3] = {edge ? edge : volume->dims_vox[0], edge ? edge : volume->dims_vox[1],
-                              edge ? edge : volume->dims_vox[2]};
-    c->blender = alpha_blender_of(m);
-    c->counters.tile_px = tile_px(m);
-    c->counters.brick_vox = edge;
-    vodr_status status = texture_unit_start(&c->texture, m, volume, table, c->view, error);
-    c->books = c->texture;
+    block_setup setup = {.machine = m,
+                         .view = c->view,
+                         .volume = volume,
+                         .walk = &c->walk,
+                         .tables = &c->tables,
+                         .storage = &c->storage};
+    size_t bricks = 1;
+    for (int i = 0; i < 3; i++) {
+        setup.edge_vox[i] = edge ? edge : volume->dims_vox[i];
+        bricks *= (size_t)ceil_div32(volume->dims_vox[i], setup.edge_vox[i]);
+    }
+    vodr_status status = texture_unit_start(&c->tables, m, volume, table, c->view, error);
     if (status == VODR_OK && edge)
         status = volume_divider_check(m, volume->dims_vox, edge, error);
     if (status == VODR_OK)
-        status =
-            volume_divider_start(&c->divider, m, volume, c->view, edges, &window, c->texture.transparent_to, error);
-    if (status == VODR_OK)
-        status = texture_unit_reserve(&c->texture, edge, error);
-    if (status == VODR_OK)
-        status = frame_buffer_start(&c->pixels, m, c->view, true, error);
-    cache_memory behind = {.context = &c->pixels, .read_line = read_line, .write_line = write_line};
-    if (status == VODR_OK)
-        status = pixel_cache_start(&c->cache, m, c->pixels.layout.lines, true, behind, error);
+        status = volume_divider_start(&c->walk, m, volume, c->view, setup.edge_vox, &window, c->tables.transparent_to,
+                                      error);
     if (status != VODR_OK)
         return status;
-    size_t bricks = 1;
-    for (int i = 0; i < 3; i++)
-        bricks *= (size_t)c->divider.bricks[i];
-    c->seen = calloc(bricks, 1);
-    c->stages = calloc((size_t)m->blend_cycles, sizeof *c->stages);
-    return c->seen && c->stages ? VODR_OK : vodr_fail(error, VODR_NO_MEMORY, "no memory for the bookkeeping of bricks");
+    if (!clocked_counts_start(&c->counts, m, c->view, observer, bricks) ||
+        !storage_start(&c->storage, m, c->view, volume, setup.edge_vox) || !make_blocks(&setup, &c->faces, &c->bank[0]))
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
+    c->counts.n.brick_vox = edge;
+    c->counts.n.skipped_bricks = c->walk.empty_bricks;
+    for (int i = 0; i < 2; i++)
+        wire(&c->bank[i], &c->ins[i]);
+    return VODR_OK;
 }
 
-static void finish(clocked *c)
+vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
+                          const vodr_view *view, const vodr_observer *observer, vodr_error *error)
 {
-    free(c->seen);
-    free(c->stages);
-    fragment_ring_free(&c->door);
-    fragment_ring_free(&c->tagged);
-    transaction_ring_free(&c->fill_requests);
-    transaction_ring_free(&c->write_requests);
-    release_ring_free(&c->releases);
-    pixel_cache_finish(&c->cache);
-    frame_buffer_finish(&c->pixels);
-    volume_divider_finish(&c->divider);
-    texture_unit_finish(&c->texture);
+    *c = calloc(1, sizeof **c);
+    if (!*c)
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
+    (*c)->machine = machine;
+    (*c)->view = view;
+    vodr_status status = start(*c, volume, table, observer, error);
+    if (status == VODR_OK)
+        return VODR_OK;
+    clocked_free(*c);
+    *c = NULL;
+    return status;
+}
+
+block_faces *clocked_faces(clocked *c)
+{
+    return &c->faces;
+}
+
+block_outs *clocked_reset(clocked *c)
+{
+    return &c->bank[c->current];
+}
+
+const block_outs *clocked_outs(const clocked *c)
+{
+    return &c->bank[c->current];
+}
+
+double clocked_done(const clocked *c)
+{
+    return volume_divider_done(&c->walk);
+}
+
+vodr_status clocked_readout(const clocked *c, vodr_frame *frame, vodr_counters *counters, vodr_error *error)
+{
+    const vodr_machine *m = c->machine;
+    frame_buffer pixels;
+    vodr_status status = frame_buffer_start(&pixels, m, c->view, true, error);
+    for (int64_t i = 0; status == VODR_OK && i < pixels.layout.lines * pixels.line_pixels; i++)
+        pixels.pixels[i] = pixel_of_word(m, word_load(c->storage.lines + i * pixels.pixel_bytes, pixels.pixel_bytes));
+    if (status == VODR_OK)
+        status = frame_buffer_readout(&pixels, m, m->blend == VODR_BLEND_MIP ? c->tables.readout : NULL, frame, error);
+    frame_buffer_finish(&pixels);
+    clocked_counts counts = c->counts;
+    clocked_counts_close(&counts);
+    if (status == VODR_OK)
+        *counters = counts.n;
+    return status;
+}
+
+void clocked_free(clocked *c)
+{
+    if (!c)
+        return;
+#define FINISH(name)                                                                                                   \
+    if (c->faces.name.state && c->faces.name.finish)                                                                   \
+    c->faces.name.finish(c->faces.name.state)
+    FINISH(volume_divider);
+    FINISH(slice_generator);
+    FINISH(rasterizer);
+    FINISH(texture_unit);
+    FINISH(alpha_blender);
+    FINISH(pixel_cache);
+    FINISH(frame_buffer);
+    FINISH(voxel_memory);
+#undef FINISH
+    clocked_counts_finish(&c->counts);
+    storage_finish(&c->storage);
+    volume_divider_finish(&c->walk);
+    texture_unit_finish(&c->tables);
+    free(c);
 }
 
 vodr_status clocked_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                           const vodr_view *view, vodr_frame *frame, vodr_counters *counters, vodr_error *error)
+                           const vodr_view *view, const vodr_options *options, vodr_frame *frame,
+                           vodr_counters *counters, vodr_error *error)
 {
-    clocked *c = calloc(1, sizeof *c);
-    if (!c)
-        return vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
-    c->m = machine;
-    c->view = view;
-    c->memory = memory_of(machine);
-    c->last = c->found = c->pushed = c->drawn = c->drawn_slice_visit = c->slice_visit = -1;
-    c->bricks.popped = c->slice_link.popped = c->load_grant = c->write_granted = c->last_pop = -1;
-    c->last_miss_read = -1;
-    c->last_read = -machine->blend_cycles;
-    vodr_status status = start(c, volume, table, error);
-    if (status == VODR_OK) {
-        run(c);
-        gather(c);
-        status = frame_buffer_readout(&c->pixels, machine, machine->blend == VODR_BLEND_MIP ? c->texture.readout : NULL,
-                                      frame, error);
-    }
-    if (status == VODR_OK && c->failed)
-        status = vodr_fail(error, VODR_NO_MEMORY, "no memory for what is under way");
-    if (status == VODR_OK)
-        *counters = c->counters;
-    else
-        vodr_frame_free(frame);
-    finish(c);
-    free(c);
+    clocked *c;
+    vodr_status status = clocked_start(&c, machine, volume, table, view, options->observer, error);
+    if (status != VODR_OK)
+        return status;
+    for (int64_t cycle = 1; clocked_step(c, NULL); cycle++)
+        if (options->progress && cycle % PROGRESS_CYCLES == 0)
+            options->progress(options->progress_context, clocked_done(c));
+    status = clocked_readout(c, frame, counters, error);
+    clocked_free(c);
     return status;
 }

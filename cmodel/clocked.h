@@ -3,10 +3,40 @@
 #ifndef VODR_CLOCKED_H
 #define VODR_CLOCKED_H
 
-#include "vodr.h"
+#include "blocks.h"
+
+enum { CLOCKED_BLOCKS = VODR_BLOCK_COUNT + 1 }; /* and the external memory of `whole` */
+
+typedef struct clocked clocked;
+
+/* A machine before its first cycle, of inputs that were checked; it outlives none of them. The observer may be NULL.
+ * *c is NULL on failure; free it with clocked_free(). */
+vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
+                          const vodr_view *view, const vodr_observer *observer, vodr_error *error);
+
+/* Where the machine's blocks are, and what their outputs hold at reset. Before the first cycle another block can be put
+ * into a face, and its reset values into its outputs; what was there is the caller's then. */
+block_faces *clocked_faces(clocked *c);
+block_outs *clocked_reset(clocked *c);
+
+/* One cycle. `order` names each of CLOCKED_BLOCKS blocks once, a vodr_block or VODR_BLOCK_COUNT for the external
+ * memory, and makes no difference; NULL: as they stand. False when there was nothing left to do. */
+bool clocked_step(clocked *c, const uint8_t *order);
+
+/* What all blocks registered last. */
+const block_outs *clocked_outs(const clocked *c);
+
+/* The share of the bricks that the divider has gone through. */
+double clocked_done(const clocked *c);
+
+/* The finished frame, to be freed with vodr_frame_free(), and its counts. */
+vodr_status clocked_readout(const clocked *c, vodr_frame *frame, vodr_counters *counters, vodr_error *error);
+
+void clocked_free(clocked *c);
 
 /* As vodr_render(), with counters->cycles. */
 vodr_status clocked_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                           const vodr_view *view, vodr_frame *frame, vodr_counters *counters, vodr_error *error);
+                           const vodr_view *view, const vodr_options *options, vodr_frame *frame,
+                           vodr_counters *counters, vodr_error *error);
 
 #endif

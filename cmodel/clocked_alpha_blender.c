@@ -1,115 +1,94 @@
-/* clocked_alpha_blender.c - the alpha blender, clocked: takes a fragment when the cache can look it up and no hazard
- * holds it. */
-#include "clocked_machine.h"
+/* clocked_alpha_blender.c - the alpha blender, clocked: keeps the colours of fragments that wait for their pixel,
+ * blends each pixel that is read, and hands it back when blend_cycles are over. */
+#include "alpha_blender.h"
 
-bool clocked_blending(const clocked *c, int32_t x, int32_t y)
+#include <stdlib.h>
+
+#include "clocked_blocks.h"
+#include "pixel_word.h"
+#include "ring.h"
+
+RING(colour_ring, uint64_t)
+
+/* A pixel under way to the cache. */
+typedef struct result {
+    bool valid, writes;
+    uint64_t pixel;
+} result;
+
+typedef struct blender_state {
+    const vodr_machine *machine;
+    alpha_blender blender;
+    colour_port waiting; /* the fragment before the cache */
+    colour_ring colours; /* of fragments that are gone from there */
+    int32_t at, delay;
+    result *stages; /* a ring: results by the cycle in which they were blended; `at`: in this one */
+    alpha_blender_out out;
+} blender_state;
+
+static void blend(blender_state *s, uint64_t pixel)
 {
-    int64_t window = c->m->blend_cycles;
-    for (int64_t n = c->reads - 1; n >= 0 && n >= c->reads - window; n--) {
-        const blend_stage *s = &c->stages[n % window];
-        if (s->x == x && s->y == y && s->cycle + window > c->now)
-            return true;
+    vodr_rgba source = pixel_of_word(s->machine, *colour_ring_front(&s->colours));
+    vodr_rgba target = pixel_of_word(s->machine, pixel);
+    uint64_t terminated;
+    result *r = &s->stages[s->at];
+    colour_ring_pop(&s->colours);
+    r->valid = true;
+    r->writes = alpha_blender_run(&s->blender, &source, 1, &target, &terminated) > 0;
+    r->pixel = pixel_word(s->machine, target);
+}
+
+static void clock(void *state, const alpha_blender_in *in, alpha_blender_out *out)
+{
+    blender_state *s = state;
+    blended_port *b = &s->out.blended;
+    report_port *report = &s->out.report;
+    result *stage = &s->stages[s->at];
+    stage->valid = false;
+    if (in->pixel->valid)
+        blend(s, in->pixel->pixel);
+    b->known = stage->valid;
+    b->known_writes = stage->writes;
+    s->at = s->at + 1 < s->delay ? s->at + 1 : 0;
+    stage = &s->stages[s->at];
+    b->valid = stage->valid;
+    b->writes = stage->writes;
+    b->pixel = stage->pixel;
+    report->status = BLOCK_IDLE;
+    if (s->waiting.valid)
+        report->status =
+            in->door->gone ? BLOCK_BUSY : BLOCK_STALLED + (in->door->hazard ? VODR_STALL_HAZARD : VODR_STALL_CACHE);
+    if (s->waiting.valid && in->door->gone) {
+        s->waiting.valid = false;
+        if (!s->waiting.dead)
+            colour_ring_push(&s->colours, s->waiting.colour);
     }
-    return false;
+    if (in->colour->valid && in->door->ready)
+        s->waiting = *in->colour;
+    report->idle = !s->waiting.valid && !s->colours.count;
+    *out = s->out;
 }
 
-/* Looks a fragment up and blends it: what it does to tags and pixels, apart from when. */
-static void look_up(clocked *c, fragment *f)
+static void finish(void *state)
 {
-    pixel_cache *cache = &c->cache;
-    int32_t offset = line_offset(&c->pixels.layout, f->x, f->y);
-    f->line = line_number(&c->pixels.layout, f->x, f->y);
-    vodr_rgba *pixel = pixel_cache_access(cache, f->line, 1) + offset;
-    f->miss = cache->missed;
-    f->reads = f->miss && cache->read;
-    f->evicts = f->miss && cache->evicted_dirty;
-    f->victim = cache->victim;
-    f->filled = CLOCKED_NEVER;
-    f->cycle = c->now;
-    f->writes = alpha_blender_run(&c->blender, &f->colour, 1, pixel, &c->counters.terminated_fragments) > 0;
-    if (!f->writes)
-        return;
-    pixel_cache_written(cache);
-    if (c->m->write_policy == VODR_WRITE_POLICY_THROUGH)
-        frame_buffer_write_pixels(&c->pixels, f->line, offset, pixel, 1, 1);
+    blender_state *s = state;
+    colour_ring_free(&s->colours);
+    free(s->stages);
+    free(s);
 }
 
-/* Entries of the write FIFO that are taken. */
-static bool write_fifo_full(const clocked *c)
+bool clocked_alpha_blender(const block_setup *setup, alpha_blender_face *face, alpha_blender_out *reset)
 {
-    if (c->m->write_policy != VODR_WRITE_POLICY_THROUGH || c->tags < c->m->write_fifo)
+    blender_state *s = calloc(1, sizeof *s);
+    *face = (alpha_blender_face){.state = s, .clock = clock, .finish = finish};
+    if (!s)
         return false;
-    int64_t number = c->tags - c->m->write_fifo;
-    return number >= c->entries || *release_ring_at(&c->releases, (size_t)number) >= c->now;
-}
-
-/* Whether a line is on its way out, so that reading it would give old pixels. */
-static bool leaving(const clocked *c, int64_t line)
-{
-    for (size_t i = 0; i < c->tagged.count; i++) {
-        const fragment *f = fragment_ring_at(&c->tagged, i);
-        if (f->evicts && !f->evicted && f->victim == line)
-            return true;
-    }
-    for (size_t i = 0; i < c->write_requests.count; i++)
-        if (transaction_ring_at(&c->write_requests, i)->line == line)
-            return true;
-    for (int64_t n = c->departure_count - 1; n >= 0 && n >= c->departure_count - VISITS; n--)
-        if (c->departures[n % VISITS].line == line && c->departures[n % VISITS].raised >= c->now)
-            return true;
-    return false;
-}
-
-/* Whether a non-blocking cache has to leave a fragment waiting before its tags. */
-static bool tags_blocked(clocked *c, const fragment *f)
-{
-    int64_t line = line_number(&c->pixels.layout, f->x, f->y), read_before = c->reads - (c->last_read == c->now);
-    if (c->tags - read_before >= c->m->nonblocking_fifo)
-        return true;
-    if (c->cache.where[line] >= 0)
-        return false;
-    int64_t misses_before = c->miss_reads - (c->miss_reads > 0 && c->last_miss_read == c->now);
-    return c->miss_tags - misses_before >= c->m->nonblocking_misses || leaving(c, line);
-}
-
-/* The alpha blender takes the next fragment, and the cache looks it up. */
-void clock_alpha_blender(clocked *c)
-{
-    int64_t latency = c->m->texture_latency_cycles;
-    latency += c->m->traversal == VODR_TRAVERSAL_WHOLE ? c->m->mem_latency_cycles : 0;
-    if (!c->door.count || fragment_ring_front(&c->door)->cycle + latency > c->now)
-        return;
-    fragment f = *fragment_ring_front(&c->door);
-    bool blocking = !c->m->nonblocking;
-    /* A blocking cache works on one access at a time: `tagged` holds the miss under way. */
-    if (blocking && (c->tagged.count || (c->reads && c->last_read == c->now))) {
-        c->n.stalls[VODR_STALL_CACHE]++;
-        return;
-    }
-    if (!f.dead && (write_fifo_full(c) || (!blocking && tags_blocked(c, &f)))) {
-        c->n.stalls[VODR_STALL_CACHE]++;
-        return;
-    }
-    if (!f.dead && blocking && clocked_blending(c, f.x, f.y)) {
-        c->n.stalls[VODR_STALL_HAZARD]++;
-        return;
-    }
-    fragment_ring_pop(&c->door);
-    c->popped++;
-    c->last_pop = c->now;
-    busy(c, VODR_BLOCK_ALPHA_BLENDER);
-    if (f.dead) {
-        c->counters.killed_fragments++;
-        return;
-    }
-    look_up(c, &f);
-    c->tags++;
-    if (blocking && !f.miss) {
-        clocked_read_pixel(c, &f);
-        return;
-    }
-    c->miss_tags += f.miss;
-    if (!blocking && f.reads)
-        clocked_push_fill(c, &f, c->now + 1);
-    c->failed |= !fragment_ring_push(&c->tagged, f);
+    s->machine = setup->machine;
+    s->blender = alpha_blender_of(setup->machine);
+    /* A pixel read in a cycle comes in the next, and what became of it is seen blend_cycles - 1 after the read. */
+    s->delay = setup->machine->blend_cycles - 2;
+    s->stages = calloc((size_t)s->delay, sizeof *s->stages);
+    s->out.report.idle = true;
+    *reset = s->out;
+    return s->stages && colour_ring_reserve(&s->colours, (size_t)setup->machine->nonblocking_fifo + 1);
 }

@@ -1,122 +1,84 @@
 /* clocked_rasterizer.c - the rasterizer, clocked: a slice row by row, a fragment a cycle, offered to the texture unit.
  */
-#include "clocked_machine.h"
+#include "rasterizer.h"
 
-static void begin_visit(clocked *c, int64_t number)
-{
-    const candidate *b = &visit_at(c, number)->brick;
-    c->counters.brick_visits++;
-    c->counters.bricks += !c->seen[b->brick];
-    c->seen[b->brick] = 1;
-}
+#include <stdlib.h>
 
-static void end_visit(clocked *c)
-{
-    int32_t limit = tile_px(c->m);
-    c->counters.brick_slices += c->covered_slices;
-    if (c->m->traversal != VODR_TRAVERSAL_WHOLE)
-        c->counters.brick_overflows += c->covered.x1 - c->covered.x0 > limit || c->covered.y1 - c->covered.y0 > limit;
-}
+#include "clocked_blocks.h"
 
-static bool is_last_fragment(clocked *c, const span *s)
-{
-    /* Whether anything of the visit follows: ask the blocks themselves. */
-    if (c->done_px + 1 < s->x1 - s->x0)
-        return false;
-    rasterizer rows = c->rows;
-    span next;
-    if (rasterizer_next(&rows, &next))
-        return false;
-    const candidate *b = &visit_at(c, c->drawn_slice_visit)->brick;
-    bool reverse = c->m->blend == VODR_BLEND_UNDER;
-    slice_generator rest = slice_generator_start(c->view, &b->box, b->k0, b->k1, reverse);
+typedef struct rasterizer_state {
     brick_slice slice;
-    while (slice_generator_next(&rest, &slice)) {
-        if (reverse ? slice.k >= c->raster_slice.k : slice.k <= c->raster_slice.k)
-            continue;
-        bool found;
-        clocked_probe_slice(&slice, &b->bound, &found);
-        if (found)
-            return false;
-    }
+    bool last; /* slice of its visit */
+    rasterizer rows;
+    bool rastering; /* a row is left */
+    bool have_span;
+    span current; /* the next row that has fragments */
+    int32_t y;    /* of the row at hand */
+    int32_t done_px;
+    rasterizer_out out;
+} rasterizer_state;
+
+static void pop(rasterizer_state *s, const slice_port *slice)
+{
+    s->slice = slice->slice;
+    s->last = slice->last;
+    rasterizer_start(&s->rows, &s->slice, &slice->bound);
+    s->y = s->rows.bound.y0;
+    s->done_px = 0;
+    s->have_span = rasterizer_next(&s->rows, &s->current);
+}
+
+static void accepted(rasterizer_state *s)
+{
+    if (++s->done_px < s->current.x1 - s->current.x0)
+        return;
+    s->y++;
+    s->done_px = 0;
+    s->have_span = rasterizer_next(&s->rows, &s->current);
+}
+
+/* The fragment at hand, if the row at hand has one. */
+static void offer(rasterizer_state *s)
+{
+    fragment_port *f = &s->out.fragment;
+    f->valid = s->rastering && s->have_span && s->y == s->current.y;
+    if (!f->valid)
+        return;
+    f->x = s->current.x0 + s->done_px;
+    f->y = s->y;
+    for (int c = 0; c < 3; c++)
+        f->a[c] = numerator_at(&s->slice.plane, c, f->x, f->y);
+}
+
+static void clock(void *state, const rasterizer_in *in, rasterizer_out *out)
+{
+    rasterizer_state *s = state;
+    report_port *report = &s->out.report;
+    bool working = s->rastering || in->slice->valid;
+    report->status = working ? BLOCK_BUSY : BLOCK_IDLE;
+    if (!s->rastering && working)
+        pop(s, in->slice);
+    else if (s->out.fragment.valid && in->fragment->ready)
+        accepted(s);
+    else if (s->out.fragment.valid)
+        report->status = BLOCK_STALLED + (in->fragment->loading ? VODR_STALL_TEXTURE_LOAD : VODR_STALL_FRAGMENT_FIFO);
+    else if (working)
+        s->y++;
+    s->rastering = working && s->y < s->rows.bound.y1;
+    s->out.slice.ready = report->idle = !s->rastering;
+    offer(s);
+    s->out.fragment.visit_done = working && !s->rastering && s->last;
+    *out = s->out;
+}
+
+bool clocked_rasterizer(const block_setup *setup, rasterizer_face *face, rasterizer_out *reset)
+{
+    (void)setup;
+    rasterizer_state *s = calloc(1, sizeof *s);
+    *face = (rasterizer_face){.state = s, .clock = clock, .finish = free};
+    if (!s)
+        return false;
+    s->out.slice.ready = s->out.report.idle = true;
+    *reset = s->out;
     return true;
-}
-
-static void cover(clocked *c, const span *s)
-{
-    px_rect *r = &c->covered;
-    r->x0 = s->x0 < r->x0 ? s->x0 : r->x0;
-    r->x1 = s->x1 > r->x1 ? s->x1 : r->x1;
-    r->y0 = s->y < r->y0 ? s->y : r->y0;
-    r->y1 = s->y >= r->y1 ? s->y + 1 : r->y1;
-}
-
-/* Offers the fragment at hand to the texture unit. */
-static void offer(clocked *c)
-{
-    int64_t number = c->drawn_slice_visit, inside = c->accepted - c->popped + (c->last_pop == c->now);
-    brick_visit *v = visit_at(c, number);
-    if (!c->visit_accepted && v->loaded >= c->now) {
-        c->n.stalls[VODR_STALL_TEXTURE_LOAD]++;
-        return;
-    }
-    /* Fetches from external memory hold as many fragments more as they take cycles. */
-    int64_t room = c->m->fragment_fifo + (c->m->traversal == VODR_TRAVERSAL_WHOLE ? c->m->mem_latency_cycles : 0);
-    if (inside >= room) {
-        c->n.stalls[VODR_STALL_FRAGMENT_FIFO]++;
-        return;
-    }
-    if (!c->visit_accepted)
-        begin_visit(c, number);
-    bool last = is_last_fragment(c, &c->current);
-    c->failed |= !fragment_ring_push(&c->door, clocked_shade(c, number, &c->raster_slice, &c->current));
-    c->visit_accepted = true;
-    c->counters.fragments++;
-    c->accepted++;
-    if (!c->slice_has_fragments) {
-        c->slice_has_fragments = true;
-        c->covered_slices++;
-    }
-    busy(c, VODR_BLOCK_RASTERIZER);
-    busy(c, VODR_BLOCK_TEXTURE_UNIT);
-    if (++c->done_px == c->current.x1 - c->current.x0) {
-        cover(c, &c->current);
-        c->next_row = c->current.y + 1;
-        c->done_px = 0;
-        c->have_span = rasterizer_next(&c->rows, &c->current);
-    }
-    if (last) {
-        v->drained = c->now;
-        end_visit(c);
-    }
-}
-
-void clock_rasterizer(clocked *c)
-{
-    if (c->rastering) {
-        if (c->have_span && c->next_row == c->current.y) {
-            offer(c);
-        } else {
-            c->next_row++;
-            busy(c, VODR_BLOCK_RASTERIZER);
-        }
-        c->rastering = c->next_row < c->rows.bound.y1;
-    } else if (can_pop(c, &c->slice_link)) {
-        if (c->drawn_slice_visit != c->slice_visit) {
-            c->drawn_slice_visit = c->slice_visit;
-            c->visit_accepted = false;
-            c->covered = (px_rect){INT32_MAX, INT32_MAX, 0, 0};
-            c->covered_slices = 0;
-        }
-        c->slice_link.full = false;
-        c->slice_link.popped = c->now;
-        c->raster_slice = c->slice;
-        rasterizer_start(&c->rows, &c->raster_slice, &visit_at(c, c->slice_visit)->brick.bound);
-        c->next_row = c->rows.bound.y0;
-        c->done_px = 0;
-        c->slice_has_fragments = false;
-        c->have_span = rasterizer_next(&c->rows, &c->current);
-        c->rastering = c->next_row < c->rows.bound.y1;
-        busy(c, VODR_BLOCK_RASTERIZER);
-    }
 }

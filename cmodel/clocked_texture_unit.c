@@ -1,36 +1,178 @@
-/* clocked_texture_unit.c - the texture unit, clocked: what it accepts, and the loader that fetches bricks ahead. */
-#include "clocked_machine.h"
+/* clocked_texture_unit.c - the texture unit, clocked: accepts fragments as long as there is room for them on their way
+ * to the alpha blender, and hands their colours on after its latency. Its loader is in clocked_loader.c. */
+#include "texture_unit.h"
 
-/* Where a fragment's density comes from: the functional texture unit, loaded with its brick. */
-fragment clocked_shade(clocked *c, int64_t number, const brick_slice *slice, const span *s)
+#include <stdlib.h>
+
+#include "clocked_blocks.h"
+#include "clocked_loader.h"
+#include "pixel_word.h"
+#include "ring.h"
+
+/* A fragment on its way; it can be seen at the end from that cycle on. */
+typedef struct shaded {
+    int32_t x, y;
+    uint64_t colour;
+    bool dead;
+    int64_t cycle;
+} shaded;
+
+/* One whose voxels were fetched from external memory. */
+typedef struct fetching {
+    int32_t x, y;
+    int64_t a[3];
+    fetch_port fetch;
+    int64_t cycle;
+} fetching;
+
+RING(shaded_ring, shaded)
+RING(fetching_ring, fetching)
+
+typedef struct unit_state {
+    const vodr_machine *machine;
+    const vodr_view *view;
+    texture_unit
+        texture; /* filter and tables; with a brick's densities in each buffer, or a fragment's voxels in one */
+    bool whole;
+    int64_t now, latency, room, count; /* of fragments accepted and not gone */
+    loader loader;
+    shaded_ring fifo;
+    fetching_ring fetches;
+    texture_unit_out out;
+} unit_state;
+
+/* Filters and classifies with the current buffer's densities. */
+static void shade(unit_state *s, int32_t x, int32_t y, const int64_t a[3], int64_t cycle)
 {
-    const candidate *b = &visit_at(c, number)->brick;
-    const span one = {.y = s->y, .x0 = s->x0 + c->done_px, .x1 = s->x0 + c->done_px + 1};
-    if (!c->visit_accepted)
-        texture_unit_load(&c->texture, b->brick, &b->box);
-    c->counters.texture_load_bytes += texture_unit_fetched(&c->texture, 1);
-    texture_unit_filter(&c->texture, slice, &one, &c->density);
-    return (fragment){.x = one.x0,
-                      .y = one.y,
-                      .cycle = c->now,
-                      .dead = c->texture.dead[c->density],
-                      .colour = c->texture.colours[c->density]};
+    const brick_slice here = {.plane.origin = {a[0], a[1], a[2]}};
+    const span one = {.y = y, .x0 = x, .x1 = x + 1};
+    uint16_t density;
+    texture_unit_filter(&s->texture, &here, &one, &density);
+    shaded_ring_push(&s->fifo, (shaded){.x = x,
+                                        .y = y,
+                                        .colour = pixel_word(s->machine, s->texture.colours[density]),
+                                        .dead = s->texture.dead[density],
+                                        .cycle = cycle});
 }
 
-void clock_texture_loader(clocked *c)
+/* Which voxels a fragment's filter takes. */
+static fetch_port fetch_of(const unit_state *s, const int64_t a[3])
 {
-    if (c->load_visit > c->pushed || c->load_wanted)
-        return;
-    brick_visit *v = visit_at(c, c->load_visit);
-    int64_t before = c->load_visit - (c->m->double_buffer ? 2 : 1);
-    if (v->divided >= c->now || c->load_grant >= c->now)
-        return;
-    if (v->load_bytes == 0) {
-        v->loaded = v->divided;
-        c->load_visit++;
-        clock_texture_loader(c);
-    } else if (before < 0 || visit_at(c, before)->drained < c->now) {
-        c->load_wanted = true;
-        c->load_raised = c->now;
+    fetch_port f = {.valid = true};
+    bool linear = s->machine->filter == VODR_FILTER_LINEAR;
+    for (int c = 0; c < 3; c++) {
+        int64_t position = s->view->base[c] + (a[c] >> s->view->shift), half = (int64_t)1 << (VODR_POSITION_BITS - 1);
+        int32_t i = (int32_t)((position - (linear ? half : 0)) >> VODR_POSITION_BITS);
+        int32_t last = s->texture.volume->dims_vox[c] - 1;
+        f.lo[c] = i < 0 ? 0 : i;
+        f.hi[c] = linear ? (i + 1 < last ? i + 1 : last) : i;
     }
+    return f;
+}
+
+static void accept(unit_state *s, const fragment_port *f)
+{
+    s->count++;
+    if (!s->whole) {
+        s->texture.current = loader_buffer(&s->loader);
+        shade(s, f->x, f->y, f->a, s->now + s->latency);
+        return;
+    }
+    s->out.fetch = fetch_of(s, f->a);
+    fetching_ring_push(&s->fetches, (fetching){.x = f->x,
+                                               .y = f->y,
+                                               .a = {f->a[0], f->a[1], f->a[2]},
+                                               .fetch = s->out.fetch,
+                                               .cycle = s->now + s->latency});
+}
+
+/* The voxels of the oldest fragment that waits for some. */
+static void fetched(unit_state *s, const voxels_port *voxels)
+{
+    const fetching *f = fetching_ring_front(&s->fetches);
+    texture_buffer *b = &s->texture.buffers[0];
+    uint16_t *to = b->densities;
+    for (int c = 0; c < 3; c++) {
+        b->region.lo[c] = f->fetch.lo[c];
+        b->region.hi[c] = f->fetch.hi[c] + 1;
+    }
+    for (int i = 0; i < 8; i++) { /* hi is lo at the volume's sides, and in `nearest` */
+        bool twice = false;
+        for (int c = 0; c < 3; c++)
+            twice |= (i >> c & 1) && f->fetch.lo[c] == f->fetch.hi[c];
+        if (!twice)
+            *to++ = voxels->density[i];
+    }
+    shade(s, f->x, f->y, f->a, f->cycle);
+    fetching_ring_pop(&s->fetches);
+}
+
+/* What is seen at the FIFO's end in the next cycle. */
+static void show(unit_state *s)
+{
+    colour_port *c = &s->out.colour;
+    if (c->valid || !s->fifo.count || shaded_ring_front(&s->fifo)->cycle > s->now + 1)
+        return;
+    const shaded *f = shaded_ring_front(&s->fifo);
+    *c = (colour_port){.valid = true, .dead = f->dead, .x = f->x, .y = f->y, .colour = f->colour};
+    shaded_ring_pop(&s->fifo);
+}
+
+static void clock(void *state, const texture_unit_in *in, texture_unit_out *out)
+{
+    unit_state *s = state;
+    accept_port *door = &s->out.fragment;
+    report_port *report = &s->out.report;
+    s->out.fetch.valid = false;
+    s->out.colour.valid &= !in->colour->ready;
+    s->count -= in->colour->gone;
+    report->status = BLOCK_IDLE;
+    if (in->voxels->valid)
+        fetched(s, in->voxels);
+    if (in->fragment->valid && door->ready) {
+        accept(s, in->fragment);
+        report->status = BLOCK_BUSY;
+    } else if (in->fragment->valid) {
+        report->status = BLOCK_STALLED + (door->loading ? VODR_STALL_TEXTURE_LOAD : VODR_STALL_FRAGMENT_FIFO);
+    }
+    show(s);
+    loader_clock(&s->loader, in, &s->out.load);
+    door->loading = !loader_ready(&s->loader);
+    door->ready = !door->loading && s->count < s->room;
+    report->idle = s->count == 0;
+    s->now++;
+    *out = s->out;
+}
+
+static void finish(void *state)
+{
+    unit_state *s = state;
+    shaded_ring_free(&s->fifo);
+    fetching_ring_free(&s->fetches);
+    for (int i = 0; i < 2; i++)
+        free(s->texture.buffers[i].densities);
+    free(s);
+}
+
+bool clocked_texture_unit(const block_setup *setup, texture_unit_face *face, texture_unit_out *reset)
+{
+    const vodr_machine *m = setup->machine;
+    unit_state *s = calloc(1, sizeof *s);
+    *face = (texture_unit_face){.state = s, .clock = clock, .finish = finish};
+    if (!s)
+        return false;
+    s->machine = m;
+    s->view = setup->view;
+    s->whole = m->traversal == VODR_TRAVERSAL_WHOLE;
+    s->texture = *setup->tables;
+    s->texture.whole = false; /* what the filter takes lies in a buffer in either case */
+    s->room = m->fragment_fifo + (s->whole ? m->mem_latency_cycles : 0);
+    /* One cycle is the link's to the cache. */
+    s->latency = m->texture_latency_cycles + (s->whole ? m->mem_latency_cycles : 0) - 1;
+    s->out.fragment.loading = true;
+    s->out.report.idle = true;
+    *reset = s->out;
+    loader_start(&s->loader, setup, s->texture.buffers);
+    return shaded_ring_reserve(&s->fifo, (size_t)s->room) && fetching_ring_reserve(&s->fetches, (size_t)s->room) &&
+           texture_unit_reserve(&s->texture, s->whole ? 2 : setup->edge_vox[0], NULL) == VODR_OK;
 }

@@ -1,9 +1,25 @@
 /* clocked_volume_divider.c - the divider, clocked: looks for the next brick with a fragment, works for as many cycles
- * as that takes, hands it on. */
-#include "clocked_machine.h"
+ * as that takes, hands it on. For the look it fuses what slice generator and rasterizer know of rows. */
+#include "volume_divider.h"
+
+#include <stdlib.h>
+
+#include "clocked_blocks.h"
+#include "rasterizer.h"
+#include "slice_generator.h"
+
+typedef struct divider_state {
+    const vodr_view *view;
+    bool front_to_back;
+    volume_divider *walk;
+    bool found; /* a visit: `next` */
+    candidate next;
+    int64_t work_left; /* cycles, before it can be handed on */
+    volume_divider_out out;
+} divider_state;
 
 /* Rows of a slice that are looked at: all, or up to the first that has a fragment. */
-int64_t clocked_probe_slice(const brick_slice *slice, const px_rect *bound, bool *found)
+static int64_t probe_slice(const brick_slice *slice, const px_rect *bound, bool *found)
 {
     rasterizer rows;
     span s;
@@ -14,43 +30,60 @@ int64_t clocked_probe_slice(const brick_slice *slice, const px_rect *bound, bool
 }
 
 /* Looks for the next brick with a fragment; the work is done at once here and takes its cycles afterwards. */
-void clocked_search(clocked *c)
+static void search(divider_state *s)
 {
-    brick_visit v = {.divided = CLOCKED_NEVER, .loaded = CLOCKED_NEVER, .drained = CLOCKED_NEVER};
-    bool found = false;
-    while (!found && volume_divider_next(&c->divider, &v.brick)) {
-        slice_generator slices =
-            slice_generator_start(c->view, &v.brick.box, v.brick.k0, v.brick.k1, c->m->blend == VODR_BLEND_UNDER);
+    s->found = false;
+    while (!s->found && volume_divider_next(s->walk, &s->next)) {
+        const candidate *c = &s->next;
+        slice_generator slices = slice_generator_start(s->view, &c->box, c->k0, c->k1, s->front_to_back);
         brick_slice slice;
-        while (!found && slice_generator_next(&slices, &slice))
-            v.work_cycles += clocked_probe_slice(&slice, &v.brick.bound, &found);
+        while (!s->found && slice_generator_next(&slices, &slice))
+            s->work_left += probe_slice(&slice, &c->bound, &s->found);
     }
-    v.work_cycles += volume_divider_work(&c->divider);
-    c->work_left = v.work_cycles;
-    c->last_found = !found;
-    if (!found)
-        return;
-    v.load_address = c->pixels.layout.lines * line_bytes(c->m) +
-                     (int64_t)v.brick.brick * brick_room_bytes(c->m, c->divider.edge_vox);
-    v.load_bytes = (int64_t)texture_unit_load(&c->books, v.brick.brick, &v.brick.box);
-    c->counters.texture_load_bytes += (uint64_t)v.load_bytes;
-    *visit_at(c, ++c->found) = v;
+    s->work_left += volume_divider_work(s->walk);
 }
 
-void clock_volume_divider(clocked *c)
+static void push(divider_state *s)
 {
-    if (c->work_left) {
-        c->work_left--;
-        busy(c, VODR_BLOCK_VOLUME_DIVIDER);
-    } else if (!c->last_found) {
-        if (!can_push(c, &c->bricks)) {
-            c->n.stalls[VODR_STALL_DIVIDER]++;
-            return;
-        }
-        c->bricks.full = true;
-        c->bricks.pushed = c->now;
-        visit_at(c, ++c->pushed)->divided = c->now;
-        busy(c, VODR_BLOCK_VOLUME_DIVIDER);
-        clocked_search(c);
+    const candidate *c = &s->next;
+    s->out.brick = (brick_port){
+        .valid = true, .fresh = true, .brick = c->brick, .box = c->box, .bound = c->bound, .k0 = c->k0, .k1 = c->k1};
+    search(s);
+}
+
+static void clock(void *state, const volume_divider_in *in, volume_divider_out *out)
+{
+    divider_state *s = state;
+    brick_port *brick = &s->out.brick;
+    report_port *report = &s->out.report;
+    bool full = brick->valid;
+    report->status = BLOCK_IDLE;
+    brick->fresh = false;
+    if (full && in->brick->ready)
+        brick->valid = false;
+    if (s->work_left) {
+        s->work_left--;
+        report->status = BLOCK_BUSY;
+    } else if (s->found && full) {
+        report->status = BLOCK_STALLED + VODR_STALL_DIVIDER;
+    } else if (s->found) {
+        push(s);
+        report->status = BLOCK_BUSY;
     }
+    report->idle = !s->found && !s->work_left && !brick->valid;
+    *out = s->out;
+}
+
+bool clocked_volume_divider(const block_setup *setup, volume_divider_face *face, volume_divider_out *reset)
+{
+    divider_state *s = calloc(1, sizeof *s);
+    *face = (volume_divider_face){.state = s, .clock = clock, .finish = free};
+    if (!s)
+        return false;
+    s->view = setup->view;
+    s->front_to_back = setup->machine->blend == VODR_BLEND_UNDER;
+    s->walk = setup->walk;
+    search(s);
+    *reset = s->out;
+    return true;
 }

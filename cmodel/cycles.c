@@ -39,8 +39,8 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     cycles *c = calloc(1, sizeof *c);
     if (!c)
         return NULL;
-    fb_layout layout = fb_layout_of(m, view->width_px, view->height_px);
     c->m = m;
+    c->layout = fb_layout_of(m, view->width_px, view->height_px);
     c->eager = m->traversal == VODR_TRAVERSAL_WHOLE;
     c->nonblocking = m->nonblocking;
     c->through = m->write_policy == VODR_WRITE_POLICY_THROUGH;
@@ -49,11 +49,11 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     c->line_bytes = line_bytes(m);
     c->pixel_bytes = pixel_bytes(m);
     c->glides = !c->nonblocking && !c->through && c->latency < c->fifo;
-    c->texture_base = layout.lines * line_bytes(m);
+    c->texture_base = c->layout.lines * line_bytes(m);
     c->memory = memory_of(m);
-    c->announced = c->current = -1;
+    c->announced = c->current = c->write_line = -1;
     c->slice_made = c->brick_taken = c->last_pop = c->load_grant = c->write_granted = c->last = -1;
-    c->slice_taken = c->last_accept = -1;
+    c->slice_taken = -1;
     c->last_read = -m->blend_cycles;
     while (c->recent_mask < m->blend_cycles)
         c->recent_mask = 2 * c->recent_mask + 1;
@@ -209,15 +209,17 @@ void cycles_flush_line(cycles *c, int64_t line)
 
 /* ---- the end ---- */
 
-/* Dirty lines leave one after the other through the write buffer, once the last blend is over. */
-static void flush(cycles *c)
+/* Dirty lines leave one after the other through the write buffer, once the last blend is over, and the cycle after the
+ * divider, too, has nothing left to do. */
+static void flush(cycles *c, int64_t searched)
 {
+    int64_t begin = max64(max64(c->raster - 1, c->last_pop), searched) + 1;
     while (cycles_grant(c))
         ;
     for (; c->dirty.count; cycle_ring_pop(&c->dirty)) {
         const cycle_access access = {.evicts = true, .victim = (int32_t)*cycle_ring_front(&c->dirty)};
         int64_t cycle;
-        cycles_evict(c, &access, max64(c->raster - 1, c->last_pop), &cycle);
+        cycles_evict(c, &access, begin, &cycle);
         cycles_grant(c);
     }
 }
@@ -227,7 +229,8 @@ bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
     vodr_cycles *n = &c->n;
     c->ended = true;
     pump(c);
-    flush(c);
+    int64_t searched = (c->announced < 0 ? -1 : visit_at(c, c->announced)->divided) + work_cycles;
+    flush(c, searched);
     n->blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)c->accepted;
     n->blocks[VODR_BLOCK_TEXTURE_UNIT].busy = (uint64_t)c->accepted;
     n->blocks[VODR_BLOCK_ALPHA_BLENDER].busy = (uint64_t)c->popped;
@@ -235,7 +238,7 @@ bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
     happened(c, max64(c->raster - 1, c->last_pop));
     happened(c, c->last_read + c->m->blend_cycles - 1);
     n->blocks[VODR_BLOCK_VOLUME_DIVIDER].busy += (uint64_t)work_cycles;
-    happened(c, (c->announced < 0 ? -1 : visit_at(c, c->announced)->divided) + work_cycles);
+    happened(c, searched);
     totals_close(n, &c->memory, c->last);
     *result = *n;
     return !c->failed;
@@ -253,7 +256,7 @@ void cycles_free(cycles *c)
     stretch_ring_free(&c->reads);
     cycle_ring_free(&c->miss_reads);
     cycle_ring_free(&c->fills);
-    cycle_ring_free(&c->releases);
+    release_ring_free(&c->releases);
     cycle_ring_free(&c->dirty);
     departure_ring_free(&c->departures);
     request_ring_free(&c->fill_requests);

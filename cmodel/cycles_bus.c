@@ -55,13 +55,11 @@ static void grant_write(cycles *c, int64_t cycle)
         c->write_pending = false;
         c->write_granted = cycle;
     }
-    if (r->line >= 0 && c->nonblocking) {
-        while (c->departures.count && departure_ring_front(&c->departures)->granted < c->last_pop)
-            departure_ring_pop(&c->departures);
-        keep(c, departure_ring_push(&c->departures, (departure){r->line, cycle}));
-    }
+    /* The cache is told in the next cycle. */
+    if (r->line >= 0 && c->nonblocking)
+        cycles_depart(c, r->line, cycle + 1);
     if (r->line < 0)
-        *cycle_ring_at(&c->releases, (size_t)(r->entry - c->release_first)) = cycle;
+        release_ring_at(&c->releases, (size_t)(r->entry - c->release_first))->cycle = cycle + 1;
     request_ring_pop(&c->write_requests);
 }
 
@@ -94,6 +92,7 @@ void cycles_miss_at_once(cycles *c, const cycle_access *access, const pixel_rows
     if (access->reads)
         filled = memory_grant(&c->memory, eligible(c, moved), access->line * c->line_bytes, c->line_bytes, false);
     if (access->evicts) {
+        c->write_line = access->victim;
         c->write_granted = eligible(c, moved);
         happened(c, memory_grant(&c->memory, c->write_granted, access->victim * c->line_bytes, c->line_bytes, true));
     }

@@ -49,10 +49,11 @@ static void take_entry(cycles *c, const segment *s, int64_t cycle)
 {
     bool writes = s->access.written >> s->offset & 1;
     int64_t written = cycle + c->m->blend_cycles;
-    keep(c, cycle_ring_push(&c->releases, writes ? CYCLE_UNKNOWN : written));
+    keep(c, release_ring_push(&c->releases, (release){s->access.line, writes ? CYCLE_UNKNOWN : written}));
     if (writes) {
         bus_request *r = request(c, &c->write_requests, written, s->access.line, c->pixel_bytes);
         if (r) {
+            r->address += line_offset(&c->layout, s->px.x + s->offset, s->px.y) * c->pixel_bytes;
             r->line = -1;
             r->entry = c->entries;
         }
@@ -81,6 +82,30 @@ static void consume(segment_ring *r, int32_t count)
 
 /* ---- misses ---- */
 
+void cycles_depart(cycles *c, int64_t line, int64_t cycle)
+{
+    while (c->departures.count && departure_ring_front(&c->departures)->cycle < c->last_pop)
+        departure_ring_pop(&c->departures);
+    keep(c, departure_ring_push(&c->departures, (departure){line, cycle}));
+}
+
+bool cycles_settled(const cycles *c, int64_t line, int64_t *cycle)
+{
+    if (c->write_line == line) {
+        if (c->write_pending)
+            return false;
+        *cycle = max64(*cycle, c->write_granted + 1);
+    }
+    for (size_t i = 0; c->through && i < c->releases.count; i++) {
+        const release *r = release_ring_at(&c->releases, i);
+        if (r->line == line && r->cycle == CYCLE_UNKNOWN)
+            return false;
+        if (r->line == line)
+            *cycle = max64(*cycle, r->cycle);
+    }
+    return true;
+}
+
 /* A dirty line moves to the write buffer, once blends are over and the buffer is free; false when that is unknown. */
 bool cycles_evict(cycles *c, const cycle_access *access, int64_t earliest, int64_t *cycle)
 {
@@ -91,6 +116,7 @@ bool cycles_evict(cycles *c, const cycle_access *access, int64_t earliest, int64
         return false;
     *cycle = max64(earliest, max64(c->last_read + c->m->blend_cycles, c->write_granted + 1));
     c->write_pending = true;
+    c->write_line = access->victim;
     request(c, &c->write_requests, *cycle, access->victim, c->line_bytes);
     return true;
 }
@@ -110,8 +136,10 @@ void cycles_begin_miss(cycles *c, int64_t cycle)
 bool cycles_resolve_miss(cycles *c, const cycle_access *access, const pixel_rows *px, bool slice_start)
 {
     if (c->miss == MISS_EVICT) {
-        int64_t cycle;
-        if (!cycles_evict(c, access, c->miss_cycle + 1, &cycle))
+        int64_t earliest = c->miss_cycle + 1, cycle;
+        if (!access->evicts && access->reads && !cycles_settled(c, access->line, &earliest))
+            return false;
+        if (!cycles_evict(c, access, earliest, &cycle))
             return false;
         c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(cycle - c->miss_cycle - 1);
         c->miss_cycle = cycle;
@@ -137,13 +165,14 @@ static bool entry_free(cycles *c, int64_t number, int64_t *cycle)
     number -= c->m->write_fifo;
     if (!c->through || number < 0)
         return true;
-    if (number >= c->entries || *cycle_ring_at(&c->releases, (size_t)(number - c->release_first)) == CYCLE_UNKNOWN)
+    if (number >= c->entries ||
+        release_ring_at(&c->releases, (size_t)(number - c->release_first))->cycle == CYCLE_UNKNOWN)
         return false;
     while (c->release_first < number) {
-        cycle_ring_pop(&c->releases);
+        release_ring_pop(&c->releases);
         c->release_first++;
     }
-    *cycle = max64(*cycle, *cycle_ring_front(&c->releases) + 1);
+    *cycle = max64(*cycle, release_ring_front(&c->releases)->cycle + 1);
     return true;
 }
 
@@ -173,15 +202,16 @@ static bool tag_free(cycles *c, const segment *s, int64_t *cycle, int64_t *lengt
     for (size_t i = 0; i < c->tagged.count; i++) {
         const segment *t = segment_ring_at(&c->tagged, i);
         bool left = i == 0 && c->miss == MISS_FILL;
-        if (!left && t->access.miss && !t->offset && t->access.evicts && t->access.victim == s->access.line)
+        if (!left && t->access.miss && !t->offset && t->access.victim == s->access.line)
             return false;
     }
-    for (size_t i = 0; i < c->write_requests.count; i++)
-        if (request_ring_at(&c->write_requests, i)->line == s->access.line)
-            return false;
+    int64_t gone = *cycle - 1;
+    if (!cycles_settled(c, s->access.line, &gone))
+        return false;
     for (size_t i = 0; i < c->departures.count; i++)
         if (departure_ring_at(&c->departures, i)->line == s->access.line)
-            *cycle = max64(*cycle, departure_ring_at(&c->departures, i)->granted + 1);
+            gone = max64(gone, departure_ring_at(&c->departures, i)->cycle);
+    *cycle = max64(*cycle, gone + 1);
     return true;
 }
 
@@ -261,7 +291,7 @@ static bool read_segment(cycles *c)
     if (s->slice_start)
         c->slice_reads = 0;
     if (c->miss == MISS_NONE) {
-        int64_t base = max64(s->cycle + 1, c->last_read + 1);
+        int64_t base = max64(s->cycle + 1, c->last_read + 1 + miss);
         int64_t clear = max64(base, hazard(c, s->px.x + s->offset, s->px.y));
         if (!miss) {
             int32_t count = stride(c, s);
@@ -282,6 +312,8 @@ static bool read_segment(cycles *c)
         c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(cycle - c->miss_cycle);
         c->miss_cycle = cycle;
         c->miss = MISS_FILL;
+        if (!s->access.evicts && s->access.victim >= 0)
+            cycles_depart(c, s->access.victim, cycle);
     }
     int64_t cycle = c->miss_cycle;
     if (s->access.reads) {

@@ -28,15 +28,14 @@ void cycles_divide(cycles *c, int64_t number)
  * fragments delays it by all that any of them waits. */
 static void settle_raster(cycles *c)
 {
-    int64_t room = c->accepted - 1 - c->fifo, length;
+    int64_t room = c->accepted - 1 - c->fifo, length, raster = c->raster;
     if (!c->glided)
         return;
     c->glided = false;
-    c->last_accept = c->raster - 1;
     if (room >= 0)
-        c->last_accept = max64(c->last_accept, stretch_cycle(&c->pops, room, &length) + 1);
-    c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(c->last_accept + 1 - c->raster);
-    c->raster = c->last_accept + 1;
+        raster = max64(raster, stretch_cycle(&c->pops, room, &length) + 2);
+    c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(raster - c->raster);
+    c->raster = raster;
 }
 
 static void take_slice(cycles *c)
@@ -86,7 +85,6 @@ static bool offer(cycles *c, const cycle_op *op)
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
-    c->last_accept = c->raster - 1;
     c->op_done += (int32_t)length;
     return true;
 }
@@ -205,6 +203,6 @@ bool cycles_advance_raster(cycles *c)
     }
     settle_raster(c);
     if (c->current >= 0 && !c->eager)
-        visit_at(c, c->current)->drained = c->last_accept;
+        visit_at(c, c->current)->drained = c->raster - 1;
     return moved;
 }

@@ -4,6 +4,7 @@
 #define VODR_CYCLES_STATE_H
 
 #include "cycles.h"
+#include "layout.h"
 #include "ring.h"
 
 #define CYCLE_UNKNOWN INT64_MIN
@@ -50,10 +51,15 @@ typedef struct bus_request {
     int64_t entry; /* of the write FIFO, written through */
 } bus_request;
 
-/* A write-back that was granted. */
+/* A line that was replaced and is gone, as the tags see it from the next cycle on. */
 typedef struct departure {
-    int64_t line, granted;
+    int64_t line, cycle;
 } departure;
+
+/* A place of the write FIFO: the line of its access, and when it was released, or CYCLE_UNKNOWN. */
+typedef struct release {
+    int64_t line, cycle;
+} release;
 
 /* Pixels of a row that were read not long ago, one a cycle. */
 typedef struct recent {
@@ -65,6 +71,7 @@ RING(segment_ring, segment)
 RING(stretch_ring, stretch)
 RING(request_ring, bus_request)
 RING(departure_ring, departure)
+RING(release_ring, release)
 RING(cycle_ring, int64_t)
 
 typedef struct visit_state {
@@ -79,6 +86,7 @@ typedef enum miss_state { MISS_NONE, MISS_EVICT, MISS_FILL } miss_state;
 
 struct cycles {
     const vodr_machine *m;
+    fb_layout layout;
     int64_t latency, fifo, texture_base, line_bytes, pixel_bytes;
     bool eager, nonblocking, through, failed, ended;
     vodr_cycles n;
@@ -95,7 +103,7 @@ struct cycles {
     int64_t visit_fragments, visit_accepted; /* of the current visit */
     bool glides;                             /* a blocking cache, and a FIFO longer than the way to the blender */
 
-    int64_t brick_taken, slice_made, slice_taken, raster, last_accept, accepted;
+    int64_t brick_taken, slice_made, slice_taken, raster, accepted;
     bool glided; /* room in the FIFO has yet to delay the rasterizer */
 
     segment_ring door; /* accepted, not yet popped */
@@ -113,10 +121,11 @@ struct cycles {
 
     miss_state miss;
     int64_t miss_cycle, fill_done, write_granted;
+    int64_t write_line; /* the one that last moved to the write buffer; -1 */
     bool write_pending;
     cycle_ring fills;          /* non-blocking: last data of granted reads, in order */
     departure_ring departures; /* not long ago */
-    cycle_ring releases;       /* write-through: by entry of its FIFO, from number release_first on */
+    release_ring releases;     /* write-through: by entry of its FIFO, from number release_first on */
     int64_t entries, release_first;
 
     memory memory;
@@ -227,6 +236,13 @@ bool cycles_resolve_miss(cycles *c, const cycle_access *access, const pixel_rows
 /* A dirty line moves to the write buffer from cycle `earliest` on, once blends are over and the buffer is free. False
  * when it is unknown when that is. */
 bool cycles_evict(cycles *c, const cycle_access *access, int64_t earliest, int64_t *cycle);
+
+/* A replaced line is gone; lets go of those that no look-up can wait for any more. */
+void cycles_depart(cycles *c, int64_t line, int64_t cycle);
+
+/* A line must not be read from memory before what was written to it is on its way there: raises *cycle to when the
+ * cache knows that it is. False when that is unknown. */
+bool cycles_settled(const cycles *c, int64_t line, int64_t *cycle);
 
 /* ---- the bus: cycles_bus.c ---- */
 

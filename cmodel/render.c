@@ -31,7 +31,8 @@ vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, 
         options = &defaults;
     if (options->path == VODR_PATH_CLOCKED) {
         vodr_status checked = pipeline_check(machine, volume, view, error);
-        return checked == VODR_OK ? clocked_render(machine, volume, table, view, frame, counters, error) : checked;
+        return checked == VODR_OK ? clocked_render(machine, volume, table, view, options, frame, counters, error)
+                                  : checked;
     }
     bool fast = options->path == VODR_PATH_FAST && fused_supports(machine, view);
     pipeline p;

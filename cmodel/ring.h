@@ -1,5 +1,5 @@
 /* ring.h - queues that grow: RING(name, type) declares name, name_push(), name_front(), name_at(), name_pop(),
- * name_free(). */
+ * name_reserve(), name_free(). A queue that never holds more than it has reserved does not run out of memory. */
 #ifndef VODR_RING_H
 #define VODR_RING_H
 
@@ -52,6 +52,13 @@
     {                                                                                                                  \
         r->head = (r->head + 1) & (r->room - 1);                                                                       \
         r->count--;                                                                                                    \
+    }                                                                                                                  \
+    static inline bool name##_reserve(name *r, size_t count) /* of an empty queue */                                   \
+    {                                                                                                                  \
+        for (r->room = 64; r->room < count; r->room *= 2)                                                              \
+            ;                                                                                                          \
+        r->items = malloc(r->room * sizeof *r->items);                                                                 \
+        return r->items != NULL;                                                                                       \
     }                                                                                                                  \
     static inline void name##_free(name *r)                                                                            \
     {                                                                                                                  \

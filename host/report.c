@@ -112,9 +112,6 @@ static host_status make_report(const char *path, const report_options *options, 
 {
     if (!options->path)
         return host_fail(error, HOST_BAD_INPUT, "report needs --output (-o) OUT.html");
-    if (options->view.path == VODR_PATH_CLOCKED)
-        return host_fail(error, HOST_BAD_INPUT,
-                         "report cannot take --path clocked, which tells of no visit and no miss: fast and blocks do");
     scene s;
     report_trace trace;
     host_status status = view_options_output(&options->view, path, options->path, error);

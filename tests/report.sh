@@ -157,6 +157,11 @@ for machine in paper-general paper-16 paper-32; do
     equal "cycles beside: $machine" "$(block a.html report | sed "s/.*\"machine\":\"$machine\"//" | member cycles)" \
         "$(member total <b.json)"
 done
+# shellcheck disable=SC2086
+page 'the clocked machine' clocked.html "$vodr" report 'a volume.raw' $view --path clocked -o clocked.html
+block a.html report >../fast.page
+block clocked.html report | sed 's/ --path clocked//; s/clocked\.html/a.html/' >../clocked.page
+same 'the clocked machine tells the same visits and misses' ../clocked.page ../fast.page
 equal 'all draw the same frame' "$(block a.html report | grep -o '"same_frame":[a-z]*' | sort -u)" '"same_frame":true'
 parameters=$("$vodr" machine show paper-16 | grep -c ' = ')
 equal 'every parameter is there' "$(block a.html report | grep -o '"values":' | wc -l)" "$parameters"
@@ -210,7 +215,6 @@ browse 'a file name that is not UTF-8, in a browser' g.html 'caf'
 # ---- what is refused ----
 bad 2 '--output' "$vodr" report "$raw" --dims 16x8x8
 bad 2 'no-such.nrrd' "$vodr" report no-such.nrrd -o no.html
-bad 2 '--path clocked' "$vodr" report "$raw" --dims 16x8x8 -o no.html --path clocked
 bad 2 '--repeat' "$vodr" report "$raw" --dims 16x8x8 -o no.html --repeat 2
 bad 2 'ways' "$vodr" report "$raw" --dims 16x8x8 -o no.html --set ways=3
 bad 3 "'no/such/place.html'" "$vodr" report "$raw" --dims 16x8x8 -o no/such/place.html

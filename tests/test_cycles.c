@@ -17,31 +17,6 @@ static const char *const stall_names[VODR_STALL_COUNT] = {"divider",  "slice",  
                                                           "cache",    "hazard",      "write_back",   "fill",
                                                           "dram_row", "dram_refresh"};
 
-/* Small figures: what is full, late or in the way must happen within frames of some thousand fragments. */
-static void random_timing(rng *r, vodr_machine *m)
-{
-    m->brick_setup_cycles = (int32_t)rng_int(r, 1, 60);
-    m->slice_setup_cycles = (int32_t)rng_int(r, 1, 20);
-    m->texture_latency_cycles = (int32_t)rng_int(r, 1, 12);
-    m->fragment_fifo = (int32_t)rng_int(r, 1, 40);
-    m->blend_cycles = (int32_t)rng_int(r, 1, 8);
-    m->nonblocking = (int32_t)rng_int(r, 0, 1);
-    m->nonblocking_fifo = (int32_t)rng_int(r, 1, 40);
-    m->nonblocking_misses = (int32_t)rng_int(r, 1, 10);
-    m->write_fifo = (int32_t)rng_int(r, 1, 20);
-    m->mem_latency_cycles = (int32_t)rng_int(r, 1, 60);
-    m->mem_bus_bytes = 1 << rng_int(r, 0, 5);
-    m->texture_burst_bytes = 16 << rng_int(r, 0, 4);
-    m->memory = (int32_t)rng_int(r, VODR_MEMORY_FIXED, VODR_MEMORY_DRAM);
-    m->dram_banks = 1 << rng_int(r, 0, 3);
-    m->dram_row_bytes = 64 << rng_int(r, 0, 5);
-    m->dram_trcd_cycles = (int32_t)rng_int(r, 1, 15);
-    m->dram_tcas_cycles = (int32_t)rng_int(r, 1, 15);
-    m->dram_trp_cycles = (int32_t)rng_int(r, 1, 15);
-    m->dram_trfc_cycles = (int32_t)rng_int(r, 1, 100);
-    m->dram_refresh_cycles = rng_one_in(r, 3) ? 0 : (int32_t)rng_int(r, m->dram_trfc_cycles + 1, 1500);
-}
-
 /* Whether a figure is the same; else it is told. */
 static bool same(FILE *file, const char *of, const char *what, uint64_t clocked, uint64_t other)
 {
@@ -100,7 +75,7 @@ static bool agree(test_case *c, FILE *file)
     vodr_machine machine = c->machine;
     case_organise(c, &machine);
     machine.traversal = (int32_t)rng_int(&c->random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_TILE);
-    random_timing(&c->random, &machine);
+    case_time(c, &machine);
     outcome clocked;
     outcome_draw(c, &machine, &truth, &clocked);
     bool good = clocked.status == VODR_OK && add_up(file, &machine, &clocked.counters.cycles);

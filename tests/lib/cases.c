@@ -120,6 +120,31 @@ void case_organise(test_case *c, vodr_machine *m)
     m->texture_memory_bytes = need + extra < 64 ? 64 : need + extra;
 }
 
+void case_time(test_case *c, vodr_machine *m)
+{
+    rng *r = &c->random;
+    m->brick_setup_cycles = (int32_t)rng_int(r, 1, 60);
+    m->slice_setup_cycles = (int32_t)rng_int(r, 1, 20);
+    m->texture_latency_cycles = (int32_t)rng_int(r, 3, 14);
+    m->fragment_fifo = (int32_t)rng_int(r, 1, 40);
+    m->blend_cycles = (int32_t)rng_int(r, 3, 10);
+    m->nonblocking = (int32_t)rng_int(r, 0, 1);
+    m->nonblocking_fifo = (int32_t)rng_int(r, 1, 40);
+    m->nonblocking_misses = (int32_t)rng_int(r, 1, 10);
+    m->write_fifo = (int32_t)rng_int(r, 1, 20);
+    m->mem_latency_cycles = (int32_t)rng_int(r, 1, 60);
+    m->mem_bus_bytes = 1 << rng_int(r, 0, 5);
+    m->texture_burst_bytes = 16 << rng_int(r, 0, 4);
+    m->memory = (int32_t)rng_int(r, VODR_MEMORY_FIXED, VODR_MEMORY_DRAM);
+    m->dram_banks = 1 << rng_int(r, 0, 3);
+    m->dram_row_bytes = 64 << rng_int(r, 0, 5);
+    m->dram_trcd_cycles = (int32_t)rng_int(r, 1, 15);
+    m->dram_tcas_cycles = (int32_t)rng_int(r, 1, 15);
+    m->dram_trp_cycles = (int32_t)rng_int(r, 1, 15);
+    m->dram_trfc_cycles = (int32_t)rng_int(r, 1, 100);
+    m->dram_refresh_cycles = rng_one_in(r, 3) ? 0 : (int32_t)rng_int(r, m->dram_trfc_cycles + 1, 1500);
+}
+
 void case_spoil(test_case *c, vodr_machine *m)
 {
     rng *r = &c->random;

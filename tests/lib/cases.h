@@ -32,6 +32,10 @@ void case_free(test_case *c);
  */
 void case_organise(test_case *c, vodr_machine *machine);
 
+/* Draws every parameter anew that is about time alone. Small figures: what is full, late or in the way must happen
+ * within frames of some thousand fragments. */
+void case_time(test_case *c, vodr_machine *machine);
+
 /* Gives a machine about as much texture memory as its bricks need, or too small a cache: it may not be buildable. */
 void case_spoil(test_case *c, vodr_machine *machine);
 

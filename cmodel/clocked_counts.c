@@ -1,0 +1,170 @@
+#include "clocked_counts.h"
+
+#include <stdlib.h>
+
+#include "layout.h"
+
+static const px_rect nothing = {INT32_MAX, INT32_MAX, 0, 0};
+
+bool clocked_counts_start(clocked_counts *c, const vodr_machine *machine, const vodr_view *view,
+                          const vodr_observer *observer, size_t bricks)
+{
+    *c = (clocked_counts){.machine = machine, .view = view, .observer = observer, .last = -1, .covered = nothing};
+    c->n.tile_px = tile_px(machine);
+    c->seen = calloc(bricks, 1);
+    return c->seen != NULL;
+}
+
+/* ---- visits ---- */
+
+/* What a visit's fragments are clipped to: in `tile` the tile that their bound lies in, else the frame. */
+static void clip_of(const clocked_counts *c, const px_rect *bound, vodr_visit *v)
+{
+    int32_t width = c->view->width_px, height = c->view->height_px, t = c->n.tile_px;
+    *v = (vodr_visit){.x1_px = width, .y1_px = height};
+    if (c->machine->traversal != VODR_TRAVERSAL_TILE)
+        return;
+    v->x0_px = bound->x0 / t * t;
+    v->y0_px = bound->y0 / t * t;
+    v->x1_px = t < width - v->x0_px ? v->x0_px + t : width;
+    v->y1_px = t < height - v->y0_px ? v->y0_px + t : height;
+}
+
+static void hand_on(clocked_counts *c, const brick_port *b)
+{
+    vodr_visit *v = &c->visits[c->handed_on++ % COUNTS_VISITS].visit;
+    clip_of(c, &b->bound, v);
+    v->brick = b->brick;
+    for (int i = 0; i < 3; i++) {
+        v->lo_vox[i] = b->box.lo[i];
+        v->hi_vox[i] = b->box.hi[i];
+    }
+    c->n.brick_visits++;
+    c->n.bricks += !c->seen[b->brick];
+    c->seen[b->brick] = 1;
+}
+
+static void accept(clocked_counts *c, const fragment_port *f)
+{
+    px_rect *r = &c->covered;
+    if (!c->visit_begun)
+        c->visits[c->begun++ % COUNTS_VISITS].first = c->n.fragments;
+    c->n.brick_slices += !c->slice_begun;
+    c->visit_begun = c->slice_begun = true;
+    r->x0 = f->x < r->x0 ? f->x : r->x0;
+    r->x1 = f->x >= r->x1 ? f->x + 1 : r->x1;
+    r->y0 = f->y < r->y0 ? f->y : r->y0;
+    r->y1 = f->y >= r->y1 ? f->y + 1 : r->y1;
+    c->n.fragments++;
+}
+
+static void end_visit(clocked_counts *c)
+{
+    const px_rect *r = &c->covered;
+    int32_t limit = c->n.tile_px;
+    if (c->machine->traversal != VODR_TRAVERSAL_WHOLE)
+        c->n.brick_overflows += r->x1 - r->x0 > limit || r->y1 - r->y0 > limit;
+    c->covered = nothing;
+    c->visit_begun = false;
+}
+
+/* ---- what blocks do ---- */
+
+static void draw(clocked_counts *c, const block_outs *before, const block_outs *after)
+{
+    if (after->volume_divider.brick.fresh)
+        hand_on(c, &after->volume_divider.brick);
+    if (before->slice_generator.slice.valid && before->rasterizer.slice.ready)
+        c->slice_begun = false;
+    if (before->rasterizer.fragment.valid && before->texture_unit.fragment.ready)
+        accept(c, &before->rasterizer.fragment);
+    if (after->rasterizer.fragment.visit_done)
+        end_visit(c);
+    if (before->texture_unit.load.valid && before->frame_buffer.load.ready)
+        c->n.texture_load_bytes += (uint64_t)before->texture_unit.load.bytes;
+    if (after->texture_unit.fetch.valid)
+        c->n.texture_load_bytes +=
+            (uint64_t)density_bytes(c->machine) * (c->machine->filter == VODR_FILTER_LINEAR ? 8 : 1);
+}
+
+/* A fragment goes from the pixel cache's door. */
+static void go(clocked_counts *c, const look_up_port *l)
+{
+    const vodr_observer *o = c->observer;
+    const counted_visit *v = &c->visits[c->told % COUNTS_VISITS];
+    if (c->told < c->begun && v->first == c->gone) {
+        c->told++;
+        if (o && o->visit)
+            o->visit(o->context, &v->visit);
+    }
+    c->gone++;
+    c->n.killed_fragments += !l->valid;
+    if (!l->valid)
+        return;
+    c->n.hits += !l->miss;
+    c->n.misses += l->miss;
+    c->n.evictions += l->replaced;
+    if (l->miss && o && o->miss)
+        o->miss(o->context, l->x, l->y);
+}
+
+static void move_pixels(clocked_counts *c, const block_outs *before, const block_outs *after)
+{
+    const pixel_cache_out *cache = &after->pixel_cache;
+    const blended_port *b = &after->alpha_blender.blended;
+    if (before->pixel_cache.door.gone)
+        go(c, &cache->look_up);
+    c->n.terminated_fragments += c->machine->blend == VODR_BLEND_UNDER && b->valid && !b->writes;
+    if (cache->fill.valid)
+        c->n.fb_read_bytes += (uint64_t)line_bytes(c->machine);
+    if (cache->write.valid)
+        c->n.fb_write_bytes += (uint64_t)cache->write.bytes;
+    c->n.writebacks += cache->write.valid && c->machine->write_policy == VODR_WRITE_POLICY_BACK;
+    if (cache->pixel.valid && c->last < c->now + c->machine->blend_cycles - 1)
+        c->last = c->now + c->machine->blend_cycles - 1;
+}
+
+/* ---- accounts ---- */
+
+static void account(clocked_counts *c, vodr_block block, uint8_t status)
+{
+    vodr_block_cycles *b = &c->n.cycles.blocks[block];
+    if (status == BLOCK_IDLE)
+        return;
+    if (status == BLOCK_BUSY) {
+        b->busy++;
+        c->last = c->last > c->now ? c->last : c->now;
+        return;
+    }
+    b->stalled++;
+    /* A fragment that the texture unit does not accept keeps the rasterizer waiting as well: one cause, told once. */
+    c->n.cycles.stalls[status - BLOCK_STALLED] += block != VODR_BLOCK_TEXTURE_UNIT;
+}
+
+void clocked_counts_cycle(clocked_counts *c, const block_outs *before, const block_outs *after)
+{
+    draw(c, before, after);
+    move_pixels(c, before, after);
+    account(c, VODR_BLOCK_VOLUME_DIVIDER, after->volume_divider.report.status);
+    account(c, VODR_BLOCK_SLICE_GENERATOR, after->slice_generator.report.status);
+    account(c, VODR_BLOCK_RASTERIZER, after->rasterizer.report.status);
+    account(c, VODR_BLOCK_TEXTURE_UNIT, after->texture_unit.report.status);
+    account(c, VODR_BLOCK_ALPHA_BLENDER, after->alpha_blender.report.status);
+    account(c, VODR_BLOCK_PIXEL_CACHE, after->pixel_cache.report.status);
+    account(c, VODR_BLOCK_FRAME_BUFFER, after->frame_buffer.report.status);
+    c->now++;
+}
+
+void clocked_counts_close(clocked_counts *c)
+{
+    vodr_cycles *n = &c->n.cycles;
+    n->total = (uint64_t)(c->last + 1);
+    for (int i = 0; i < VODR_BLOCK_COUNT; i++)
+        n->blocks[i].idle = n->total - n->blocks[i].busy - n->blocks[i].stalled;
+}
+
+void clocked_counts_finish(clocked_counts *c)
+{
+    free(c->seen);
+    c->seen = NULL;
+}

@@ -1,0 +1,41 @@
+/* clocked_counts.h - what a clocked machine did, counted at its ports alone: so the counts are the same whoever its
+ * blocks are (docs/architecture.md, section 10; docs/timing.md, section 10). */
+#ifndef VODR_CLOCKED_COUNTS_H
+#define VODR_CLOCKED_COUNTS_H
+
+#include "blocks.h"
+
+enum { COUNTS_VISITS = 8 }; /* more than can be under way before the pixel cache's door */
+
+typedef struct counted_visit {
+    vodr_visit visit;
+    uint64_t first; /* number of its first fragment */
+} counted_visit;
+
+typedef struct clocked_counts {
+    const vodr_machine *machine;
+    const vodr_view *view;
+    const vodr_observer *observer; /* or NULL */
+    vodr_counters n;
+    int64_t now, last; /* the last cycle in which something happened */
+    uint8_t *seen;     /* by brick: visited before */
+    counted_visit visits[COUNTS_VISITS];
+    uint64_t handed_on, begun, told; /* visits: by the divider; with a fragment accepted; with one at the door */
+    uint64_t gone;                   /* fragments from the door */
+    bool visit_begun, slice_begun;   /* the visit, the slice at hand has had a fragment */
+    px_rect covered;                 /* by the visit's fragments */
+} clocked_counts;
+
+/* False when there is no memory. Free with clocked_counts_finish(). */
+bool clocked_counts_start(clocked_counts *c, const vodr_machine *machine, const vodr_view *view,
+                          const vodr_observer *observer, size_t bricks);
+
+/* A cycle: what all blocks had registered before it, and at its end. */
+void clocked_counts_cycle(clocked_counts *c, const block_outs *before, const block_outs *after);
+
+/* Closes the accounts of the blocks. */
+void clocked_counts_close(clocked_counts *c);
+
+void clocked_counts_finish(clocked_counts *c);
+
+#endif
