@@ -12,7 +12,8 @@ bool clocked_counts_start(clocked_counts *c, const vodr_machine *machine, const 
     *c = (clocked_counts){.machine = machine, .view = view, .observer = observer, .last = -1, .covered = nothing};
     c->n.tile_px = tile_px(machine);
     c->seen = calloc(bricks, 1);
-    return c->seen != NULL;
+    /* A visit before the door has a fragment in the FIFO, but for those that divider, generator and rasterizer hold. */
+    return c->seen && counted_visit_ring_reserve(&c->visits, (size_t)machine->fragment_fifo + 8);
 }
 
 /* ---- visits ---- */
@@ -32,13 +33,14 @@ static void clip_of(const clocked_counts *c, const px_rect *bound, vodr_visit *v
 
 static void hand_on(clocked_counts *c, const brick_port *b)
 {
-    vodr_visit *v = &c->visits[c->handed_on++ % COUNTS_VISITS].visit;
-    clip_of(c, &b->bound, v);
-    v->brick = b->brick;
+    counted_visit v = {.first = 0};
+    clip_of(c, &b->bound, &v.visit);
+    v.visit.brick = b->brick;
     for (int i = 0; i < 3; i++) {
-        v->lo_vox[i] = b->box.lo[i];
-        v->hi_vox[i] = b->box.hi[i];
+        v.visit.lo_vox[i] = b->box.lo[i];
+        v.visit.hi_vox[i] = b->box.hi[i];
     }
+    counted_visit_ring_push(&c->visits, v);
     c->n.brick_visits++;
     c->n.bricks += !c->seen[b->brick];
     c->seen[b->brick] = 1;
@@ -48,7 +50,7 @@ static void accept(clocked_counts *c, const fragment_port *f)
 {
     px_rect *r = &c->covered;
     if (!c->visit_begun)
-        c->visits[c->begun++ % COUNTS_VISITS].first = c->n.fragments;
+        counted_visit_ring_at(&c->visits, c->begun++)->first = c->n.fragments;
     c->n.brick_slices += !c->slice_begun;
     c->visit_begun = c->slice_begun = true;
     r->x0 = f->x < r->x0 ? f->x : r->x0;
@@ -91,11 +93,11 @@ static void draw(clocked_counts *c, const block_outs *before, const block_outs *
 static void go(clocked_counts *c, const look_up_port *l)
 {
     const vodr_observer *o = c->observer;
-    const counted_visit *v = &c->visits[c->told % COUNTS_VISITS];
-    if (c->told < c->begun && v->first == c->gone) {
-        c->told++;
+    if (c->begun && counted_visit_ring_front(&c->visits)->first == c->gone) {
         if (o && o->visit)
-            o->visit(o->context, &v->visit);
+            o->visit(o->context, &counted_visit_ring_front(&c->visits)->visit);
+        counted_visit_ring_pop(&c->visits);
+        c->begun--;
     }
     c->gone++;
     c->n.killed_fragments += !l->valid;
@@ -165,6 +167,7 @@ void clocked_counts_close(clocked_counts *c)
 
 void clocked_counts_finish(clocked_counts *c)
 {
+    counted_visit_ring_free(&c->visits);
     free(c->seen);
     c->seen = NULL;
 }

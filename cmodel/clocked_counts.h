@@ -4,26 +4,27 @@
 #define VODR_CLOCKED_COUNTS_H
 
 #include "blocks.h"
-
-enum { COUNTS_VISITS = 8 }; /* more than can be under way before the pixel cache's door */
+#include "ring.h"
 
 typedef struct counted_visit {
     vodr_visit visit;
     uint64_t first; /* number of its first fragment */
 } counted_visit;
 
+RING(counted_visit_ring, counted_visit)
+
 typedef struct clocked_counts {
     const vodr_machine *machine;
     const vodr_view *view;
     const vodr_observer *observer; /* or NULL */
     vodr_counters n;
-    int64_t now, last; /* the last cycle in which something happened */
-    uint8_t *seen;     /* by brick: visited before */
-    counted_visit visits[COUNTS_VISITS];
-    uint64_t handed_on, begun, told; /* visits: by the divider; with a fragment accepted; with one at the door */
-    uint64_t gone;                   /* fragments from the door */
-    bool visit_begun, slice_begun;   /* the visit, the slice at hand has had a fragment */
-    px_rect covered;                 /* by the visit's fragments */
+    int64_t now, last;             /* the last cycle in which something happened */
+    uint8_t *seen;                 /* by brick: visited before */
+    counted_visit_ring visits;     /* handed on by the divider, and none of their fragments is gone from the door */
+    uint64_t begun;                /* so many of these have had a fragment accepted */
+    uint64_t gone;                 /* fragments from the door */
+    bool visit_begun, slice_begun; /* the visit, the slice at hand has had a fragment */
+    px_rect covered;               /* by the visit's fragments */
 } clocked_counts;
 
 /* False when there is no memory. Free with clocked_counts_finish(). */

@@ -80,12 +80,12 @@ static void surround(clocked *c, block_faces *inner)
 #undef SURROUND
 }
 
-/* An alpha blender that turns one bit of each pixel that it writes. */
+/* An alpha blender whose pixels have a colour larger than their alpha. */
 static void wrong_blender(void *state, const alpha_blender_in *in, alpha_blender_out *out)
 {
     const alpha_blender_face *inner = state;
     inner->clock(inner->state, in, out);
-    out->blended.pixel ^= 1;
+    out->blended.pixel = 1;
 }
 
 /* ---- frames ---- */
@@ -174,8 +174,7 @@ static bool agree(test_case *c, FILE *file)
         good = tell(file, c, &m, "the order of blocks makes a difference");
     }
     good = good && draw_wrong(c, &m, &wrong);
-    bool many = drawn[1].counters.misses > 20; /* so that not all their pixels come right by chance */
-    if (good && m.blend == VODR_BLEND_OVER && many &&
+    if (good && m.blend == VODR_BLEND_OVER && drawn[1].counters.misses > 0 &&
         memcmp(drawn[1].frame.pixels, wrong.frame.pixels, wrong.frame.bytes) == 0) {
         good = tell(file, c, &m, "another blender makes no difference");
     }
