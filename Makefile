@@ -32,7 +32,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep findings contact-sheet fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -74,6 +74,11 @@ bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep
 	@scripts/tables $(BUILD) sweep
 	@cat $(BUILD)/tables/sweep
 
+findings: ## hold the named machines against paper-16 on every volume at hand, and write docs/findings.md again (an hour)
+	@scripts/deps check
+	@$(MAKE) -s $(PARALLEL) all $(BUILD)/tests/limits
+	@scripts/findings $(BUILD)
+
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
 	@$(BUILD)/bench/table_vodr
@@ -99,7 +104,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views cycles tour
+	@scripts/tables $(BUILD) size table1 views cycles tour machines
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles

@@ -385,7 +385,8 @@ static void put_front_list(const plot *p)
     }
 }
 
-/* Label, and a logarithmic scale where values lie decades apart; returns what they are divided by. */
+/* Label, and a logarithmic scale where values lie a decade apart, else one from zero where that is near; returns what
+ * they are divided by. */
 static double put_objective_axis(const plot *p, const char *side, size_t objective)
 {
     char label[LABEL_CHARS], what[16];
@@ -398,8 +399,11 @@ static double put_objective_axis(const plot *p, const char *side, size_t objecti
     snprintf(label + n, sizeof label - n, p->objectives->largest[objective] ? ", more is better" : ", less is better");
     snprintf(what, sizeof what, "%slabel", side);
     set(p, what, label);
-    if (least > 0 && largest > 50 * least)
-        fprintf(p->script, "set logscale %s\n", side);
+    if (least > 0 && largest > 10 * least)
+        fprintf(p->script, "set logscale %s\nset %srange [%.10g:%.10g]\n", side, side, least / scale / 1.5,
+                largest / scale * 1.5);
+    else if (least >= 0 && least < largest / 2)
+        fprintf(p->script, "set %srange [0:*]\n", side);
     return scale;
 }
 

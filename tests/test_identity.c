@@ -161,6 +161,42 @@ static bool tile_order_is_compulsory(test_case *c, FILE *file)
     return good;
 }
 
+/* The organisation of every named machine draws a case's picture as paper-16 does. */
+static bool named_machines_draw_the_same(test_case *c, FILE *file)
+{
+    const vodr_options options = {.threads = 1};
+    size_t count;
+    const vodr_parameter *parameters = vodr_parameters(&count);
+    outcome expected = {0};
+    bool good = true;
+    outcome_draw(c, &c->machine, &options, &expected);
+    for (size_t i = 0; good && vodr_machine_name(i); i++) {
+        vodr_machine machine;
+        outcome o = {0};
+        good = HOLDS(vodr_machine_named(vodr_machine_name(i), &machine, NULL) == VODR_OK);
+        for (size_t p = 0; p < count; p++) {
+            char value[32];
+            vodr_machine_get(&c->machine, &parameters[p], value, sizeof value);
+            if (parameters[p].picture)
+                good &= HOLDS(vodr_machine_set(&machine, parameters[p].name, value, NULL) == VODR_OK);
+        }
+        outcome_draw(c, &machine, &options, &o);
+        good = good && HOLDS(o.status == VODR_OK) && outcome_same_frame(file, &expected, &o);
+        if (!good) {
+            fprintf(file, "  %s: %s\n", vodr_machine_name(i), o.error.text);
+            case_print(file, c, &machine);
+        }
+        outcome_free(&o);
+    }
+    outcome_free(&expected);
+    return good;
+}
+
+static void test_named_machines_draw_the_same(void **state)
+{
+    assert_int_equal(suite_run(*state, named_machines_draw_the_same), 0);
+}
+
 static void test_division_changes_nothing(void **state)
 {
     assert_int_equal(suite_run(*state, division_changes_nothing), 0);
@@ -180,6 +216,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(test_division_changes_nothing, &options),
         cmocka_unit_test_prestate(test_tile_order_is_compulsory, &options),
+        cmocka_unit_test_prestate(test_named_machines_draw_the_same, &options),
     };
     return cmocka_run_group_tests_name("identity", tests, NULL, NULL) == 0 ? 0 : 1;
 }

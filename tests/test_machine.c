@@ -174,13 +174,21 @@ static void named_machines(void **state)
         assert_same(&m, &want);
         assert_int_equal(vodr_machine_check(&m, &error), VODR_OK);
     }
-    size_t count = 0;
+    size_t count = 0, parameter_count;
+    const vodr_parameter *parameters = vodr_parameters(&parameter_count);
     for (; vodr_machine_name(count); count++) {
         vodr_machine m;
         assert_true(count == 0 || strcmp(vodr_machine_name(count - 1), vodr_machine_name(count)) < 0);
         assert_non_null(vodr_machine_text(vodr_machine_name(count)));
         assert_int_equal(vodr_machine_named(vodr_machine_name(count), &m, NULL), VODR_OK);
         assert_int_equal(vodr_machine_check(&m, NULL), VODR_OK);
+        /* They differ in organisation alone. */
+        for (size_t i = 0; i < parameter_count; i++) {
+            char value[32];
+            vodr_machine_get(&m, &parameters[i], value, sizeof value);
+            if (parameters[i].picture)
+                assert_string_equal(value, parameters[i].fallback);
+        }
     }
     assert_true(count >= 3);
     vodr_machine m;
