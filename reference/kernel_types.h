@@ -1,0 +1,66 @@
+/* kernel_types.h - what a kernel is given: plain data, the same on the CPU and on a card, pointers aside. */
+#ifndef REFERENCE_KERNEL_TYPES_H
+#define REFERENCE_KERNEL_TYPES_H
+
+#include "reference.h"
+
+/* Reconstruction, as kernels know it: the filters of reference.h, and what numbers make of them. */
+typedef enum kernel_filter { KERNEL_NEAREST, KERNEL_LINEAR, KERNEL_TEXTURE, KERNEL_FILTERS } kernel_filter;
+
+/* What becomes of the samples of a ray. */
+typedef enum kernel_mode { KERNEL_OVER, KERNEL_LIT, KERNEL_MIP, KERNEL_MODES } kernel_mode;
+
+/* What a block's byte says. */
+typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIPS } kernel_skip;
+
+/* One pixel's ray, clipped to the volume: sample n of `count` lies at start + n*step, in voxels. */
+typedef struct kernel_ray {
+    double start[3], step[3];
+    int32_t count;
+} kernel_ray;
+
+typedef struct kernel_volume {
+    int32_t dims_vox[3];
+    reference_voxel type;
+    const void *voxels;
+    unsigned long long texture; /* CUDA: the same voxels as a texture object; normalised where they are integers */
+} kernel_volume;
+
+/* Blocks of `edge` cells; cell i lies between the centres of voxels i-1 and i, so that an axis has one more than voxels.
+ * distance[b]: 0, the block is to be sampled; D, no block closer than D, diagonals counting 1, has anything to show. */
+typedef struct kernel_blocks {
+    int32_t edge_vox, count[3];
+    const uint8_t *distance; /* over */
+    const float *most;       /* mip: the greatest stored value a sample in the block can have */
+} kernel_blocks;
+
+/* Colour of a sample: (columns*row + column) entries of r, g, b, a. */
+typedef struct kernel_table {
+    int32_t columns, rows;
+    const void *rgba;      /* of the numbers drawn in */
+    double scale, offset;  /* column = stored*scale + offset */
+    double gradient_scale; /* row = gradient magnitude, of stored values a finest voxel, times this */
+} kernel_table;
+
+typedef struct kernel_frame {
+    reference_camera camera;
+    kernel_volume volume;
+    kernel_blocks blocks;
+    kernel_table table;
+    kernel_filter filter;
+    double termination;
+    bool phong;
+} kernel_frame;
+
+/* ---- the machine's arithmetic ---- */
+
+typedef struct kernel_fixed {
+    vodr_view view;
+    int32_t dims_vox[3], voxel_bytes, density_bits, weight_bits, guard_bits, bits; /* bits: of a channel of the frame */
+    int32_t blend, filter;  /* of vodr_hw.h */
+    const void *voxels;
+    const uint16_t *map;    /* of 256 entries; 8-bit voxels only */
+    const vodr_rgba *table; /* of the frame's bits */
+} kernel_fixed;
+
+#endif
