@@ -12,8 +12,17 @@ SANITIZE ?=
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
 STRICT   := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -ffp-contract=off \
             -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-psabi -Werror
-INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -isystem /usr/include/nifti
+INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -isystem /usr/include/nifti
 COMPILE   = $(CC) $(STRICT) $(CFLAGS) $(SANITIZE) $(INCLUDES) -pthread -MMD -MP
+REFERENCE_MATHS := -fno-math-errno -fno-trapping-math # lanes take square roots side by side; no result changes
+
+# CUDA is optional: without nvcc the reference renderer draws on the CPU only. NVCC= leaves it out.
+NVCC     ?= $(firstword $(shell command -v nvcc) $(wildcard /usr/local/cuda/bin/nvcc))
+CUDA_ARCH ?= $(if $(shell command -v nvidia-smi),native,compute_80)
+NVCCFLAGS := -std=c++17 -O3 -arch=$(CUDA_ARCH) -Xcompiler -Wall,-Wextra
+CUDA_HOME := $(patsubst %/bin/nvcc,%,$(realpath $(NVCC)))
+CUDA_LIBRARIES := $(if $(NVCC),-L$(CUDA_HOME)/lib64 -lcudart_static -lstdc++ -ldl -lrt)
+
 LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
 
 HW       := hw/parameters.txt hw/registers.txt
@@ -21,10 +30,15 @@ MACHINES := $(sort $(wildcard hw/machines/*.txt))
 GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh
 CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vodr_hw.o
 HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c)))
+REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
+             $(BUILD)/reference/$(if $(NVCC),device_cuda.o,device_no_cuda.o)
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
+# What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
+RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
+            host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch]))
 SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 
@@ -128,6 +142,16 @@ $(BUILD)/libvodr.a: $(CMODEL)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
+
+$(BUILD)/%.o: %.cu | $(GEN)
+	@mkdir -p $(@D)
+	$(NVCC) $(NVCCFLAGS) -I$(BUILD)/gen -Icmodel -Ireference -Ibench/record -MMD -MP -c -o $@ $<
+
+$(BUILD)/libreference.a: $(REFERENCE)
+	@rm -f $@
+	ar rcs $@ $^
+
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
 	ar rcs $@ $^
@@ -135,11 +159,18 @@ $(BUILD)/libhost.a: $(HOST)
 $(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
+$(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
+	$(NVCC) -o $@ $^
+
 $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
+$(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)

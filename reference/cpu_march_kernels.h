@@ -1,5 +1,5 @@
-/* cpu_march_kernels.h - the functions of cpu_march.h for lanes of REAL, whose packets are tiles of pixels. Included once
- * by a file for each REAL; the variants are constants that the compiler folds into each copy of one loop. */
+/* cpu_march_kernels.h - the functions of cpu_march.h for lanes of REAL, whose packets are tiles of pixels. Included
+ * once by a file for each REAL; the variants are constants that the compiler folds into each copy of one loop. */
 #include "cpu_march.h"
 #include "kernel_march.h"
 #include "kernel_ray.h"
@@ -51,7 +51,7 @@ KERNEL void march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rg
 
 #define DEFINE_ONE(set, target, mode, skip)                                                                            \
     target static void march_##set##_##mode##_##skip(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba,      \
-                                                     uint64_t *samples)                                               \
+                                                     uint64_t *samples)                                                \
     {                                                                                                                  \
         march_rows(f, y0, y1, rgba, samples, mode, skip);                                                              \
     }

@@ -113,10 +113,8 @@ static reference_status cpu_march(void *state, const device_march *m, double *rg
     (void)error;
     const cpu_state *s = state;
     const cpu_kernels *k = m->numbers == REFERENCE_DOUBLE ? cpu_kernels_double(s->simd) : cpu_kernels_float(s->simd);
-    cpu_job job = {.march = m,
-                   .march_rows = k->march[m->mode][m->skip],
-                   .rgba = rgba,
-                   .height_px = m->frame.camera.height_px};
+    cpu_job job = {
+        .march = m, .march_rows = k->march[m->mode][m->skip], .rgba = rgba, .height_px = m->frame.camera.height_px};
     run(s, &job, stats);
     return REFERENCE_OK;
 }

@@ -83,7 +83,7 @@ static reference_status open_device(cuda_state *s, char name[DEVICE_NAME_CHARS],
     if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0)
         return reference_fail(error, REFERENCE_NO_DEVICE, "there is no CUDA device (--device cpu needs none)");
     TRY(cudaGetDeviceProperties(&properties, 0));
-    snprintf(name, DEVICE_NAME_CHARS, "%s", properties.name);
+    snprintf(name, DEVICE_NAME_CHARS, "%.150s", properties.name);
     TRY(cudaEventCreate(&s->begin));
     TRY(cudaEventCreate(&s->end));
     return check_room(volume_bytes(&s->volume), "the volume", error);
@@ -134,8 +134,8 @@ static reference_status need_texture(cuda_state *s, vodr_error *error)
     if (!s->array)
         TRY(cudaMalloc3DArray(&s->array, &format, extent));
     cudaMemcpy3DParms copy = {};
-    copy.srcPtr = make_cudaPitchedPtr((void *)v->voxels, v->dims_vox[0] * voxel_bytes[v->type], v->dims_vox[0],
-                                      v->dims_vox[1]);
+    copy.srcPtr =
+        make_cudaPitchedPtr((void *)v->voxels, v->dims_vox[0] * voxel_bytes[v->type], v->dims_vox[0], v->dims_vox[1]);
     copy.dstArray = s->array;
     copy.extent = extent;
     copy.kind = cudaMemcpyHostToDevice;
@@ -230,7 +230,7 @@ static reference_status draw_fixed(cuda_state *s, frame_memory *m, kernel_fixed 
     f.table = (const vodr_rgba *)table;
     TRY(cudaEventRecord(s->begin));
     fixed_kernel<<<grid_of(f.view.width_px, f.view.height_px), dim3(BLOCK_W, BLOCK_H)>>>(f, (vodr_rgba *)out,
-                                                                                        (uint32_t *)counts);
+                                                                                         (uint32_t *)counts);
     TRY_STATUS(finish(s, (const uint32_t *)counts, count, stats, error));
     TRY(cudaMemcpy(pixels, out, count * sizeof *pixels, cudaMemcpyDeviceToHost));
     return REFERENCE_OK;
@@ -287,8 +287,7 @@ template <kernel_mode mode, kernel_filter filter, kernel_skip skip> static march
     }
 }
 
-template <kernel_mode mode, kernel_filter filter>
-static march_function *by_skip(kernel_skip skip, reference_voxel type)
+template <kernel_mode mode, kernel_filter filter> static march_function *by_skip(kernel_skip skip, reference_voxel type)
 {
     return skip == KERNEL_SKIP_NONE ? by_type<mode, filter, KERNEL_SKIP_NONE>(type)
                                     : by_type<mode, filter, KERNEL_SKIP_EMPTY>(type);

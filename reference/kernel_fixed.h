@@ -59,7 +59,8 @@ KERNEL int32_t fixed_sample(const kernel_fixed *f, const int64_t position[3])
     int64_t at[3][2];
     int32_t w[3], d[8];
     for (int c = 0; c < 3; c++) {
-        int64_t q = position[c] - (1 << (VODR_POSITION_BITS - 1)), i = q >> VODR_POSITION_BITS, last = f->dims_vox[c] - 1;
+        int64_t q = position[c] - (1 << (VODR_POSITION_BITS - 1)), i = q >> VODR_POSITION_BITS,
+                last = f->dims_vox[c] - 1;
         w[c] = (int32_t)(q >> (VODR_POSITION_BITS - f->weight_bits)) & ((1 << f->weight_bits) - 1);
         at[c][0] = (i < 0 ? 0 : i) * stride[c];
         at[c][1] = (i + 1 > last ? last : i + 1) * stride[c];

@@ -58,20 +58,20 @@ KERNEL void classify(const kernel_table *t, const void *rgba, real value, real g
         colour[c] = mix(colour[c], below[c], down);
 }
 
-/* Light from the eye, on both sides of a surface; ambient 0.3, diffuse 0.6, specular 0.3 to the 20th power. Where there
- * is no gradient there is no surface, and the colour stays. */
-KERNEL void shade_phong(const march_lane *lane, const real gradient[3], real magnitude, real colour[4])
+/* Light from the eye, on both sides of a surface; ambient 0.3, diffuse 0.6, specular 0.3 to the 20th power. `surface`,
+ * 0 to 1, says how much of a surface there is: where there is none, the colour stays. */
+KERNEL void shade_phong(const march_lane *lane, const real gradient[3], real magnitude, real surface, real colour[4])
 {
-    mask surface = magnitude > 0;
     real along = gradient[0] * lane->light[0] + gradient[1] * lane->light[1] + gradient[2] * lane->light[2];
-    real facing = along / pick(surface, magnitude, spread(1));
+    real facing = along / pick(magnitude > 0, magnitude, spread(1));
     facing = pick(facing < 0, -facing, facing);
     real power4 = facing * facing * facing * facing, power16 = power4 * power4 * power4 * power4;
     real lit = (REAL)0.3 + (REAL)0.6 * facing, shine = (REAL)0.3 * power16 * power4 * colour[3];
+    surface = pick(surface > 1, spread(1), surface);
     for (int c = 0; c < 3; c++) {
         real shaded = colour[c] * lit + shine;
         shaded = pick(shaded > colour[3], colour[3], shaded);
-        colour[c] = pick(surface, shaded, colour[c]);
+        colour[c] = mix(colour[c], shaded, surface);
     }
 }
 
@@ -102,17 +102,18 @@ KERNEL whole samples_to_leave(const kernel_blocks *b, const march_lane *lane, co
 }
 
 /* Moves the live lanes past blocks with nothing to show; at is where each then stands. */
-KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_mode mode, real greatest,
-                       whole *n, mask *live, real p[3])
+KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_mode mode,
+                       real greatest, whole *n, mask *live, real p[3])
 {
     const kernel_blocks *b = &f->blocks;
+    const REAL above = f->filter == KERNEL_TEXTURE ? (REAL)(1 + 0x1p-16) : 1; /* a texture unit's own rounding */
     for (;;) {
         whole at[3], distance;
         for (int a = 0; a < 3; a++)
             p[a] = rays->start[a] + to_real(*n) * rays->step[a];
         whole block = block_of(b, p, at);
         if (mode == KERNEL_MIP)
-            distance = pick_whole(fetch_float(b->most, block) <= greatest, spread_whole(1), spread_whole(0));
+            distance = pick_whole(fetch_float(b->most, block) * above <= greatest, spread_whole(1), spread_whole(0));
         else
             distance = fetch_byte(b->distance, block);
         mask hop = *live & (distance > 0);
@@ -160,15 +161,15 @@ KERNEL void march_over(const kernel_frame *f, const march_lane *lane, const void
         if (by_gradient)
             classify(&f->table, rgba, value, magnitude, colour);
         if (f->phong)
-            shade_phong(lane, gradient, magnitude, colour);
+            shade_phong(lane, gradient, magnitude, magnitude * (REAL)f->surface_scale, colour);
     }
     real through = pick(live, 1 - out->rgba[3], spread(0));
     for (int c = 0; c < 4; c++)
         out->rgba[c] = out->rgba[c] + colour[c] * through;
 }
 
-/* The whole ray. mode, filter, skip and type are constants where this is inlined; rgba is the table, wherever the device
- * keeps it. */
+/* The whole ray. mode, filter, skip and type are constants where this is inlined; rgba is the table, wherever the
+ * device keeps it. */
 KERNEL packet_result march(const kernel_frame *f, const void *rgba, const packet *rays, kernel_mode mode,
                            kernel_filter filter, kernel_skip skip, reference_voxel type)
 {

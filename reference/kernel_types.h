@@ -26,8 +26,9 @@ typedef struct kernel_volume {
     unsigned long long texture; /* CUDA: the same voxels as a texture object; normalised where they are integers */
 } kernel_volume;
 
-/* Blocks of `edge` cells; cell i lies between the centres of voxels i-1 and i, so that an axis has one more than voxels.
- * distance[b]: 0, the block is to be sampled; D, no block closer than D, diagonals counting 1, has anything to show. */
+/* Blocks of `edge` cells; cell i lies between the centres of voxels i-1 and i, so that an axis has one more than
+ * voxels. distance[b]: 0, the block is to be sampled; D, no block closer than D, diagonals counting 1, has anything to
+ * show. */
 typedef struct kernel_blocks {
     int32_t edge_vox, count[3];
     const uint8_t *distance; /* over */
@@ -50,6 +51,7 @@ typedef struct kernel_frame {
     kernel_filter filter;
     double termination;
     bool phong;
+    double surface_scale; /* phong: from a gradient magnitude of 1/surface_scale on there is a whole surface */
 } kernel_frame;
 
 /* ---- the machine's arithmetic ---- */
@@ -57,7 +59,7 @@ typedef struct kernel_frame {
 typedef struct kernel_fixed {
     vodr_view view;
     int32_t dims_vox[3], voxel_bytes, density_bits, weight_bits, guard_bits, bits; /* bits: of a channel of the frame */
-    int32_t blend, filter;  /* of vodr_hw.h */
+    int32_t blend, filter;                                                         /* of vodr_hw.h */
     const void *voxels;
     const uint16_t *map;    /* of 256 entries; 8-bit voxels only */
     const vodr_rgba *table; /* of the frame's bits */

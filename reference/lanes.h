@@ -1,7 +1,8 @@
 /* lanes.h - the numbers that kernels compute with: on a card one lane a thread, on the CPU vectors of several rays.
  *
- * Kernels are written once over `real`, `whole` and `mask`; control flow asks any_lane(mask). REAL, the type of a lane, is
- * defined by the file that includes a kernel: float or double. Each lane computes the same, whatever its neighbours do.
+ * Kernels are written once over `real`, `whole` and `mask`; control flow asks any_lane(mask). REAL, the type of a lane,
+ * is defined by the file that includes a kernel: float or double. Each lane computes the same, whatever its neighbours
+ * do.
  */
 #ifndef REFERENCE_LANES_H
 #define REFERENCE_LANES_H

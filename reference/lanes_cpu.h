@@ -1,5 +1,5 @@
-/* lanes_cpu.h - lanes.h on the CPU: vectors of 64 bytes, in as many registers as the instruction set needs. Look-ups are
- * scalar loads: they go faster than gather instructions where those are slow, and no slower elsewhere. */
+/* lanes_cpu.h - lanes.h on the CPU: vectors of 64 bytes, in as many registers as the instruction set needs. Look-ups
+ * are scalar loads: they go faster than gather instructions where those are slow, and no slower elsewhere. */
 #ifndef REFERENCE_LANES_CPU_H
 #define REFERENCE_LANES_CPU_H
 

@@ -13,6 +13,9 @@
 
 enum { MAX_TABLE = 1 << 20, MAX_BLOCK_VOX = 32768 };
 
+/* A gradient of the whole window over this many finest voxels makes a whole surface. */
+static const double surface_vox = 1024;
+
 struct reference {
     const device_ops *ops;
     void *state;
@@ -100,7 +103,8 @@ static reference_status check_table(const vodr_table *table, const vodr_machine 
 {
     size_t count = (size_t)1 << m->density_bits;
     if (table->count != count)
-        return reference_fail(error, REFERENCE_INVALID, "the table has %zu entries, must have %zu", table->count, count);
+        return reference_fail(error, REFERENCE_INVALID, "the table has %zu entries, must have %zu", table->count,
+                              count);
     for (size_t i = 0; i < count; i++) {
         const vodr_rgba *e = &table->entries[i];
         if (e->a >> m->tf_bits || e->r > e->a || e->g > e->a || e->b > e->a)
@@ -185,9 +189,9 @@ reference_status reference_fixed(reference *r, const vodr_machine *m, const uint
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a table of %zu entries", table->count);
     for (size_t i = 0; i < table->count; i++) {
         const vodr_rgba *e = &table->entries[i];
-        entries[i] = (vodr_rgba){
-            convert_channel(e->r, m->tf_bits, m->fb_bits), convert_channel(e->g, m->tf_bits, m->fb_bits),
-            convert_channel(e->b, m->tf_bits, m->fb_bits), convert_channel(e->a, m->tf_bits, m->fb_bits)};
+        entries[i] =
+            (vodr_rgba){convert_channel(e->r, m->tf_bits, m->fb_bits), convert_channel(e->g, m->tf_bits, m->fb_bits),
+                        convert_channel(e->b, m->tf_bits, m->fb_bits), convert_channel(e->a, m->tf_bits, m->fb_bits)};
     }
     kernel_fixed f = {.view = *view,
                       .voxel_bytes = r->volume.type == REFERENCE_UINT8 ? 1 : 2,
@@ -307,7 +311,8 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
                                 .table = table_of(job, table),
                                 .filter = filter_of(job),
                                 .termination = job->termination,
-                                .phong = job->shading == REFERENCE_PHONG},
+                                .phong = job->shading == REFERENCE_PHONG,
+                                .surface_scale = fabs(job->window_scale) * surface_vox},
                       .numbers = job->numbers,
                       .mode = mode_of(job),
                       .skip = skips ? KERNEL_SKIP_EMPTY : KERNEL_SKIP_NONE};
@@ -325,8 +330,8 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
     return status;
 }
 
-reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits,
-                                    vodr_frame *frame, vodr_error *error)
+reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits, vodr_frame *frame,
+                                    vodr_error *error)
 {
     reference_status status = make_frame(camera->width_px, camera->height_px, bits, frame, error);
     double full = bits == 16 ? 65535 : 255;

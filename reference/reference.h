@@ -1,8 +1,9 @@
 /* reference.h - the public interface of the reference renderer: the pictures that the machine is held against.
  *
  * A reference holds one volume on one device: the CPU, or a CUDA card. Both run the kernels of kernel_*.h, compiled
- * from the same lines. reference_fixed() draws in the machine's own arithmetic, written from docs/architecture.md alone;
- * reference_march() follows each pixel's ray in floating point, over the machine's slices or at steps of its own.
+ * from the same lines. reference_fixed() draws in the machine's own arithmetic, written from docs/architecture.md
+ * alone; reference_march() follows each pixel's ray in floating point, over the machine's slices or at steps of its
+ * own.
  *
  * Errors: a function that can fail returns a status and writes one sentence to its vodr_error. No global mutable state;
  * one reference is used by one thread at a time. */
@@ -93,9 +94,9 @@ typedef struct reference_camera {
     int32_t width_px, height_px;
     double origin[3][3], direction[3][3]; /* [constant, per x, per y][axis] */
     double first, spacing;
-    int64_t most;        /* samples on a ray, in the volume or not */
-    bool by_length;      /* d is brought to a length of one finest voxel first, and nothing nearer than a depth of one
-                            finest voxel counts; d has a depth of one */
+    int64_t most;          /* samples on a ray, in the volume or not */
+    bool by_length;        /* d is brought to a length of one finest voxel first, and nothing nearer than a depth of one
+                              finest voxel counts; d has a depth of one */
     double spacing_vox[3]; /* of the volume: finest voxels that a voxel is long */
 } reference_camera;
 
@@ -121,7 +122,7 @@ typedef struct reference_march_job {
     reference_filter filter;
     reference_shading shading;
     reference_accel accel;
-    int32_t block_vox; /* edge of a block, 2 to 64 */
+    int32_t block_vox;  /* edge of a block, 2 to 64 */
     double termination; /* a ray ends at this opacity; above 1: never */
     reference_table table;
     double window_scale, window_offset; /* place in the window, 0 to 1 = stored*scale + offset */
@@ -132,8 +133,8 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
                                  vodr_error *error);
 
 /* Rounds to the nearest of 8 or 16 bits. *frame is new. */
-reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits,
-                                    vodr_frame *frame, vodr_error *error);
+reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits, vodr_frame *frame,
+                                    vodr_error *error);
 
 #ifdef __cplusplus
 }

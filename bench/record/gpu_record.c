@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "baseline.h"
 #include "camera.h"
 #include "cases.h"
 #include "outcome.h"
@@ -67,10 +68,10 @@ typedef struct tally {
     uint64_t float_frames, accel_differ, counts_differ;
     distance float_cpu; /* float of the device and of the CPU */
     distance texture_cpu;
-    distance float_double;
+    distance float_double[2]; /* by filter: positions that round across a border between voxels show with nearest */
 } tally;
 
-static bool draw_fixed(const test_case *c, const reference_volume *volume, const reference_options *options, tally *t)
+static bool draw_fixed(const test_case *c, const reference_volume *v, const reference_options *options, tally *t)
 {
     reference *r = NULL;
     outcome model, ours = {0};
@@ -79,9 +80,10 @@ static bool draw_fixed(const test_case *c, const reference_volume *volume, const
     double begin_s = stopwatch_now_s();
     outcome_draw(c, &c->machine, &how, &model);
     t->model_ms += 1e3 * (stopwatch_now_s() - begin_s);
-    bool good = say(reference_open(options, volume, &r, &ours.error), "open", &ours.error) &&
-                say(reference_fixed(r, &c->machine, c->input.map, &c->table, &c->view, &ours.frame, &stats, &ours.error),
-                    "fixed", &ours.error);
+    bool good =
+        say(reference_open(options, v, &r, &ours.error), "open", &ours.error) &&
+        say(reference_fixed(r, &c->machine, c->input.map, &c->table, &c->view, &ours.frame, &stats, &ours.error),
+            "fixed", &ours.error);
     if (good) {
         t->frames++;
         t->samples += stats.samples;
@@ -108,15 +110,15 @@ static reference_march_job random_job(test_case *c, double *table)
         spacing[a] = c->geometry.spacing[a] / finest;
     bool rays = rng_one_in(r, 2);
     fill_table(table, rng_real(r, 0, 0.9), rng_real(r, 0.01, 1));
-    return (reference_march_job){
-        .camera = rays ? reference_camera_rays(&c->view, spacing, rng_real(r, 0.3, 2)) : reference_camera_slices(&c->view),
-        .blend = rng_one_in(r, 3) ? REFERENCE_MIP : REFERENCE_OVER,
-        .filter = rng_one_in(r, 4) ? REFERENCE_NEAREST : REFERENCE_LINEAR,
-        .shading = rng_one_in(r, 2) ? REFERENCE_PHONG : REFERENCE_UNLIT,
-        .block_vox = (int32_t)rng_int(r, 2, 12),
-        .termination = rays ? 0.998 : 2,
-        .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
-        .window_scale = 1 / most};
+    return (reference_march_job){.camera = rays ? reference_camera_rays(&c->view, spacing, rng_real(r, 0.3, 2))
+                                                : reference_camera_slices(&c->view),
+                                 .blend = rng_one_in(r, 3) ? REFERENCE_MIP : REFERENCE_OVER,
+                                 .filter = rng_one_in(r, 4) ? REFERENCE_NEAREST : REFERENCE_LINEAR,
+                                 .shading = rng_one_in(r, 2) ? REFERENCE_PHONG : REFERENCE_UNLIT,
+                                 .block_vox = (int32_t)rng_int(r, 2, 12),
+                                 .termination = rays ? 0.998 : 2,
+                                 .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
+                                 .window_scale = 1 / most};
 }
 
 static bool march(reference *r, reference_march_job job, reference_numbers numbers, reference_accel accel, double *rgba,
@@ -128,7 +130,24 @@ static bool march(reference *r, reference_march_job job, reference_numbers numbe
     return say(reference_march(r, &job, rgba, stats, &error), "march", &error);
 }
 
-static bool draw_float(test_case *c, const reference_volume *volume, const reference_options *options, tally *t)
+/* Every --accel against none. */
+static bool accelerate(reference *device, const reference_march_job *job, reference_numbers numbers, double *a,
+                       double *b, size_t channels, uint64_t seed, tally *t)
+{
+    reference_stats stats;
+    bool good = march(device, *job, numbers, REFERENCE_ACCEL_NONE, a, &stats);
+    for (int accel = REFERENCE_ACCEL_BLOCK; good && accel <= REFERENCE_ACCEL_BEST; accel++) {
+        good = march(device, *job, numbers, (reference_accel)accel, b, &stats);
+        if (good && memcmp(a, b, channels * sizeof *a) != 0) {
+            t->accel_differ++;
+            fprintf(stderr, "case %llu, numbers %d, accel %d: not the picture of none\n", (unsigned long long)seed,
+                    numbers, accel);
+        }
+    }
+    return good;
+}
+
+static bool draw_float(test_case *c, const reference_volume *v, const reference_options *options, tally *t)
 {
     static const reference_options cpu = {.device = REFERENCE_CPU, .threads = 1};
     static double table[4 * COLUMNS];
@@ -138,16 +157,11 @@ static bool draw_float(test_case *c, const reference_volume *volume, const refer
     double *a = malloc(channels * sizeof *a), *b = malloc(channels * sizeof *b);
     reference_march_job job = random_job(c, table);
     reference_stats none, other;
-    bool good = a && b && say(reference_open(options, volume, &device, &error), "open", &error) &&
-                say(reference_open(&cpu, volume, &host, &error), "open", &error) &&
+    bool good = a && b && say(reference_open(options, v, &device, &error), "open", &error) &&
+                say(reference_open(&cpu, v, &host, &error), "open", &error) &&
+                accelerate(device, &job, REFERENCE_TEXTURE, a, b, channels, c->seed, t) &&
+                accelerate(device, &job, REFERENCE_FLOAT, a, b, channels, c->seed, t) &&
                 march(device, job, REFERENCE_FLOAT, REFERENCE_ACCEL_NONE, a, &none);
-    for (int accel = REFERENCE_ACCEL_BLOCK; good && accel <= REFERENCE_ACCEL_BEST; accel++) {
-        good = march(device, job, REFERENCE_FLOAT, (reference_accel)accel, b, &other);
-        if (good && memcmp(a, b, channels * sizeof *a) != 0) {
-            t->accel_differ++;
-            fprintf(stderr, "case %llu, accel %d: not the picture of none\n", (unsigned long long)c->seed, accel);
-        }
-    }
     good = good && march(host, job, REFERENCE_FLOAT, REFERENCE_ACCEL_NONE, b, &other);
     if (good) {
         t->counts_differ += other.samples != none.samples;
@@ -156,7 +170,7 @@ static bool draw_float(test_case *c, const reference_volume *volume, const refer
     }
     good = good && march(host, job, REFERENCE_DOUBLE, REFERENCE_ACCEL_NONE, b, &other);
     if (good)
-        add_distance(&t->float_double, a, b, channels);
+        add_distance(&t->float_double[job.filter], a, b, channels);
     good = good && march(device, job, REFERENCE_TEXTURE, REFERENCE_ACCEL_NONE, a, &none) &&
            march(host, job, REFERENCE_TEXTURE, REFERENCE_ACCEL_NONE, b, &other);
     if (good)
@@ -175,21 +189,22 @@ static int matrix(const reference_options *options, int cases)
     for (int i = 0; i < cases && good; i++) {
         test_case c;
         good = case_make((uint64_t)i + 1, &c);
-        reference_volume volume = {.type = c.input.voxel_bytes == 1 ? REFERENCE_UINT8 : REFERENCE_UINT16,
-                                   .voxels = c.input.voxels};
-        memcpy(volume.dims_vox, c.input.dims_vox, sizeof volume.dims_vox);
-        good = good && draw_fixed(&c, &volume, options, &t) && draw_float(&c, &volume, options, &t);
+        reference_volume v = {.type = c.input.voxel_bytes == 1 ? REFERENCE_UINT8 : REFERENCE_UINT16,
+                              .voxels = c.input.voxels};
+        memcpy(v.dims_vox, c.input.dims_vox, sizeof v.dims_vox);
+        good = good && draw_fixed(&c, &v, options, &t) && draw_float(&c, &v, options, &t);
         case_free(&c);
     }
     printf("{\"result\": \"matrix\", \"fixed_frames\": %llu, \"fixed_differ\": %llu, \"fixed_hash\": \"%016llx\", "
            "\"fixed_samples\": %llu, \"fixed_device_ms\": %.3f, \"model_1_thread_ms\": %.3f, \"float_frames\": %llu, "
            "\"accel_differ\": %llu, \"samples_differ\": %llu, \"float_cpu_db\": %.2f, \"float_cpu_max\": %.3g, "
-           "\"float_double_db\": %.2f, \"float_double_max\": %.3g, \"texture_cpu_db\": %.2f, \"texture_cpu_max\": %.3g}\n",
+           "\"linear_double_db\": %.2f, \"linear_double_max\": %.3g, \"nearest_double_db\": %.2f, \"texture_cpu_db\": "
+           "%.2f, \"texture_cpu_max\": %.3g}\n",
            (unsigned long long)t.frames, (unsigned long long)t.differ, (unsigned long long)t.hash,
            (unsigned long long)t.samples, t.device_ms, t.model_ms, (unsigned long long)t.float_frames,
            (unsigned long long)t.accel_differ, (unsigned long long)t.counts_differ, decibels(&t.float_cpu),
-           t.float_cpu.largest, decibels(&t.float_double), t.float_double.largest, decibels(&t.texture_cpu),
-           t.texture_cpu.largest);
+           t.float_cpu.largest, decibels(&t.float_double[REFERENCE_LINEAR]), t.float_double[REFERENCE_LINEAR].largest,
+           decibels(&t.float_double[REFERENCE_NEAREST]), decibels(&t.texture_cpu), t.texture_cpu.largest);
     return good && t.differ == 0 && t.accel_differ == 0 ? 0 : 1;
 }
 
@@ -227,15 +242,35 @@ typedef struct timed {
     double termination;
 } timed;
 
-static int time_one(reference *r, const char *volume, const vodr_view *view, const char *view_name, const timed *t,
-                    double *rgba)
+/* The rival on the same frame as the row that ends rays early; how far its picture is from ours. */
+static int time_baseline(const reference_volume *v, const char *volume_name, const char *view_name,
+                         const reference_march_job *job, const double *ours)
+{
+    vodr_error error;
+    double times_ms[ROUNDS], *rgba = malloc(4 * 1024 * 1024 * sizeof *rgba);
+    distance d = {0};
+    bool good = rgba && say(baseline_draw(v, job, rgba, times_ms, ROUNDS, &error), "baseline", &error);
+    if (good) {
+        add_distance(&d, rgba, ours, 4 * 1024 * 1024);
+        double median = stopwatch_median(times_ms, ROUNDS);
+        printf("{\"result\": \"baseline\", \"volume\": \"%s\", \"view\": \"%s\", \"ms\": %.4f, \"least_ms\": %.4f, "
+               "\"most_ms\": %.4f, \"max_difference\": %.5f}\n",
+               volume_name, view_name, median, times_ms[0], times_ms[ROUNDS - 1], d.largest);
+    }
+    free(rgba);
+    return good ? 0 : 1;
+}
+
+static int time_one(reference *r, const reference_volume *v, const char *volume_name, const vodr_view *view,
+                    const char *view_name, const timed *t, double *rgba)
 {
     static double table[4 * COLUMNS];
     static const double spacing[3] = {1, 1, 1};
     double times_ms[ROUNDS];
     reference_stats stats = {0};
     fill_table(table, t->first, t->opacity);
-    reference_march_job job = {.camera = t->rays ? reference_camera_rays(view, spacing, 1) : reference_camera_slices(view),
+    reference_march_job job = {.camera =
+                                   t->rays ? reference_camera_rays(view, spacing, 1) : reference_camera_slices(view),
                                .blend = t->blend,
                                .filter = REFERENCE_LINEAR,
                                .shading = t->shading,
@@ -250,21 +285,24 @@ static int time_one(reference *r, const char *volume, const vodr_view *view, con
             times_ms[i] = stats.draw_ms;
     }
     double median = stopwatch_median(times_ms, ROUNDS);
-    printf("{\"result\": \"time\", \"volume\": \"%s\", \"view\": \"%s\", \"size_px\": %d, \"method\": \"%s\", \"numbers\": "
+    printf("{\"result\": \"time\", \"volume\": \"%s\", \"view\": \"%s\", \"size_px\": %d, \"method\": \"%s\", "
+           "\"numbers\": "
            "\"%s\", \"blend\": \"%s\", \"accel\": \"%s\", \"shading\": \"%s\", \"ms\": %.4f, \"least_ms\": %.4f, "
            "\"most_ms\": %.4f, \"samples\": %llu, \"gsamples_s\": %.1f, \"prepare_ms\": %.3f}\n",
-           volume, view_name, view->width_px, t->method, t->numbers_name, t->blend_name, t->accel_name,
+           volume_name, view_name, view->width_px, t->method, t->numbers_name, t->blend_name, t->accel_name,
            t->shading == REFERENCE_PHONG ? "phong" : "none", median, times_ms[0], times_ms[ROUNDS - 1],
            (unsigned long long)stats.samples, (double)stats.samples / median * 1e-6, stats.prepare_ms);
     fflush(stdout);
-    return 0;
+    return strcmp(t->accel_name, "ends") == 0 ? time_baseline(v, volume_name, view_name, &job, rgba) : 0;
 }
 
 /* Rows: opaque enough to end rays, or so faint that none ends. */
 static const timed rows[] = {
     {"raycast", "texture", "mip", "none", true, REFERENCE_TEXTURE, REFERENCE_MIP, REFERENCE_ACCEL_NONE, 0, 0, 1, 2},
-    {"raycast", "texture", "over", "none", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2},
-    {"slices", "texture", "over", "none", false, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2},
+    {"raycast", "texture", "over", "none", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4,
+     2},
+    {"slices", "texture", "over", "none", false, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4,
+     2},
     {"raycast", "float", "mip", "none", true, REFERENCE_FLOAT, REFERENCE_MIP, REFERENCE_ACCEL_NONE, 0, 0, 1, 2},
     {"raycast", "float", "over", "none", true, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2},
     {"slices", "float", "over", "none", false, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2},
@@ -274,7 +312,8 @@ static const timed rows[] = {
      0.95},
     {"raycast", "texture", "over", "best", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_BEST, 0, 0.3, 0.3,
      0.95},
-    {"raycast", "float", "over", "best", true, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_BEST, 0, 0.3, 0.3, 0.95},
+    {"raycast", "float", "over", "best", true, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_BEST, 0, 0.3, 0.3,
+     0.95},
     {"raycast", "texture", "over", "best", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_BEST,
      REFERENCE_PHONG, 0.3, 0.3, 0.95},
     {"raycast", "texture", "mip", "block", true, REFERENCE_TEXTURE, REFERENCE_MIP, REFERENCE_ACCEL_BLOCK, 0, 0, 1, 2},
@@ -304,27 +343,27 @@ static int times(const reference_options *options, int side, const char *path, c
         make_volume(voxels, side);
     }
     vodr_error error;
-    reference_volume volume = {{side, side, side}, REFERENCE_UINT8, voxels};
+    reference_volume v = {{side, side, side}, REFERENCE_UINT8, voxels};
     reference *r = NULL;
-    int failed = !say(reference_open(options, &volume, &r, &error), "open", &error);
+    int failed = !say(reference_open(options, &v, &r, &error), "open", &error);
     printf("{\"result\": \"device\", \"name\": \"%s\"}\n", r ? reference_device_name(r) : "none");
-    struct volume geometry = {.spacing = {1, 1, 1}, .axis = {0, 1, 2}, .sign = {1, 1, 1}};
+    volume geometry = {.spacing = {1, 1, 1}, .axis = {0, 1, 2}, .sign = {1, 1, 1}};
     for (int a = 0; a < 3; a++)
         geometry.dims_vox[a] = side;
-    for (size_t v = 0; !failed && v < sizeof views / sizeof *views; v++) {
+    for (size_t at = 0; !failed && at < sizeof views / sizeof *views; at++) {
         camera c = camera_default();
         host_error reason;
         vodr_view view;
         double depth;
-        c.azimuth_deg = views[v].azimuth_deg;
-        c.elevation_deg = views[v].elevation_deg;
+        c.azimuth_deg = views[at].azimuth_deg;
+        c.elevation_deg = views[at].elevation_deg;
         c.width_px = c.height_px = 1024;
         c.slices = side;
         c.zoom = 1024.0 / side;
         if (camera_view(&c, &geometry, &view, &depth, &reason) != HOST_OK)
             return 2;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-            failed |= time_one(r, name, &view, views[v].name, &rows[i], rgba);
+            failed |= time_one(r, &v, name, &view, views[at].name, &rows[i], rgba);
     }
     reference_close(r);
     free(voxels);
