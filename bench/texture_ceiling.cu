@@ -4,6 +4,7 @@
  *   texture_ceiling [SIDE_VOX [SIZE_PX [SAMPLES [ROUNDS]]]]    512 1024 512 9 */
 #include <algorithm>
 #include <cuda_runtime.h>
+#include <numeric>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +14,7 @@
 struct rays {
     float start[3], across[3], down[3], step[3];
     int size_px, samples, side_vox;
+    bool clip; /* samples outside the volume are left out */
 };
 
 struct source {
@@ -111,8 +113,20 @@ struct by_quads {
     }
 };
 
+/* The samples of a ray that lie in the volume, half a sample from its faces. */
+static __device__ __forceinline__ int2 inside(const rays &r, const float p[3])
+{
+    float first = 0, last = (float)r.samples;
+    for (int a = 0; a < 3; a++) {
+        float u = (0.5f - p[a]) / r.step[a], v = (r.side_vox - 0.5f - p[a]) / r.step[a];
+        first = fmaxf(first, fminf(u, v));
+        last = fminf(last, fmaxf(u, v));
+    }
+    return make_int2((int)ceilf(first), max((int)ceilf(first), (int)floorf(last)));
+}
+
 /* Position by an addition a sample. `table`: an entry of four floats from shared memory is blended too. */
-template <class sampler, bool table> static __global__ void march(source s, rays r, float *out)
+template <class sampler, bool table> static __global__ void march(source s, rays r, float *out, unsigned *counts)
 {
     __shared__ float4 entries[1025];
     if (table) {
@@ -127,8 +141,11 @@ template <class sampler, bool table> static __global__ void march(source s, rays
     float4 c = make_float4(0, 0, 0, 0);
     for (int a = 0; a < 3; a++)
         p[a] = r.start[a] + x * r.across[a] + y * r.down[a];
+    const int2 range = r.clip ? inside(r, p) : make_int2(0, r.samples);
+    for (int a = 0; a < 3; a++)
+        p[a] += range.x * r.step[a];
 #pragma unroll 4
-    for (int n = 0; n < r.samples; n++) {
+    for (int n = range.x; n < range.y; n++) {
         float value = sampler::at(s, r.side_vox, p[0], p[1], p[2]);
         if (table) {
             float place = value * sampler::columns;
@@ -146,6 +163,7 @@ template <class sampler, bool table> static __global__ void march(source s, rays
             p[a] += r.step[a];
     }
     out[(size_t)y * r.size_px + x] = table ? c.x + c.y + c.z + c.w : greatest;
+    counts[(size_t)y * r.size_px + x] = range.y - range.x;
 }
 
 static __global__ void pack(const uint8_t *bytes, int side, uint2 *corners, uint32_t *quads)
@@ -223,30 +241,37 @@ static rays make_rays(int view, int side, int size, int samples)
         r.start[view] = step / 2;
         return r;
     }
-    /* Azimuth and elevation 30 degrees, shrunk to stay within the volume. */
-    const float c = 0.8660254f, s = 0.5f, shrink = 0.57f;
+    /* Azimuth and elevation 30 degrees: shrunk to stay within the volume, or a frame with samples a voxel apart. */
+    const float c = 0.8660254f, s = 0.5f, shrink = view == 3 ? 0.57f : 1;
+    r.clip = view == 4;
+    if (r.clip) {
+        r.samples = 2 * side;
+        step = 1;
+    }
     const float right[3] = {c, 0, -s}, up[3] = {-s * s, c, -c * s}, eye[3] = {s * c, s, c * c};
     for (int a = 0; a < 3; a++) {
         r.across[a] = right[a] * pixel * shrink;
         r.down[a] = -up[a] * pixel * shrink;
         r.step[a] = -eye[a] * step * shrink;
-        r.start[a] = side / 2.0f - (r.across[a] + r.down[a]) * size / 2 - r.step[a] * samples / 2;
+        r.start[a] = side / 2.0f - (r.across[a] + r.down[a]) * size / 2 - r.step[a] * r.samples / 2;
     }
     return r;
 }
 
-static const char *const view_names[] = {"x", "y", "z", "oblique"};
+static const char *const view_names[] = {"x", "y", "z", "oblique", "frame"};
 
 template <class sampler, bool table>
-static void measure(const char *name, const source &s, int side, int size, int samples, int rounds, float *out)
+static void measure(const char *name, const source &s, int side, int size, int samples, int rounds, float *out,
+                    unsigned *counts)
 {
     cudaEvent_t begin, end;
     must(cudaEventCreate(&begin), "cudaEventCreate");
     must(cudaEventCreate(&end), "cudaEventCreate");
-    static const dim3 blocks[] = {dim3(16, 8), dim3(32, 8), dim3(8, 8), dim3(32, 4), dim3(8, 16)};
-    for (int view = 0; view < 4; view++) {
+    static const dim3 blocks[] = {dim3(16, 8), dim3(32, 8), dim3(8, 8), dim3(32, 4), dim3(8, 16), dim3(4, 32)};
+    std::vector<unsigned> taken((size_t)size * size);
+    for (int view = 0; view < 5; view++) {
         rays r = make_rays(view, side, size, samples);
-        double best = 0, best_least = 0, best_most = 0;
+        double best = 0, best_least = 0, best_most = 0, all = 0;
         dim3 best_block;
         for (const dim3 &block : blocks) {
             dim3 grid((size + block.x - 1) / block.x, (size + block.y - 1) / block.y);
@@ -254,13 +279,17 @@ static void measure(const char *name, const source &s, int side, int size, int s
             for (int i = -2; i < rounds; i++) {
                 float ms;
                 must(cudaEventRecord(begin), "cudaEventRecord");
-                march<sampler, table><<<grid, block>>>(s, r, out);
+                march<sampler, table><<<grid, block>>>(s, r, out, counts);
                 must(cudaGetLastError(), name);
                 must(cudaEventRecord(end), "cudaEventRecord");
                 must(cudaEventSynchronize(end), name);
                 must(cudaEventElapsedTime(&ms, begin, end), "cudaEventElapsedTime");
+                if (i == -2) {
+                    must(cudaMemcpy(taken.data(), counts, taken.size() * sizeof *counts, cudaMemcpyDeviceToHost), name);
+                    all = std::accumulate(taken.begin(), taken.end(), 0.0);
+                }
                 if (i >= 0)
-                    rates.push_back((double)size * size * samples / ms * 1e-6);
+                    rates.push_back(all / ms * 1e-6);
             }
             std::sort(rates.begin(), rates.end());
             if (rates[rates.size() / 2] > best) {
@@ -292,13 +321,15 @@ int main(int argc, char **argv)
     }
     source s = make_source(side);
     float *out;
+    unsigned *counts;
+    must(cudaMalloc(&counts, (size_t)size * size * sizeof *counts), "cudaMalloc");
     must(cudaMalloc(&out, (size_t)size * size * sizeof *out), "cudaMalloc");
-    measure<by_texture, false>("tex3D", s, side, size, samples, rounds, out);
-    measure<by_texture, true>("tex3D", s, side, size, samples, rounds, out);
-    measure<by_corners, false>("corners", s, side, size, samples, rounds, out);
-    measure<by_corners, true>("corners", s, side, size, samples, rounds, out);
-    measure<by_quads, false>("quads", s, side, size, samples, rounds, out);
-    measure<by_quads, true>("quads", s, side, size, samples, rounds, out);
-    measure<by_bytes, false>("bytes", s, side, size, samples, rounds, out);
+    measure<by_texture, false>("tex3D", s, side, size, samples, rounds, out, counts);
+    measure<by_texture, true>("tex3D", s, side, size, samples, rounds, out, counts);
+    measure<by_corners, false>("corners", s, side, size, samples, rounds, out, counts);
+    measure<by_corners, true>("corners", s, side, size, samples, rounds, out, counts);
+    measure<by_quads, false>("quads", s, side, size, samples, rounds, out, counts);
+    measure<by_quads, true>("quads", s, side, size, samples, rounds, out, counts);
+    measure<by_bytes, false>("bytes", s, side, size, samples, rounds, out, counts);
     return 0;
 }

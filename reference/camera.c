@@ -3,7 +3,7 @@
 
 #include "reference.h"
 
-enum { MOST_SAMPLES = 1 << 29 }; /* on a ray, within the volume or not: the volume ends it */
+enum { MOST_SAMPLES = 1 << 24 }; /* on a ray, within the volume or not: the volume ends it */
 
 /* Registers of `bits` fraction bits, in voxels. */
 static void in_voxels(const int64_t fixed[3], int32_t bits, double voxels[3])

@@ -12,11 +12,15 @@ enum { CPU_TILE_PX = 4 };
 
 typedef struct cpu_kernels {
     const char *name;
-    cpu_march_rows *march[KERNEL_MODES][KERNEL_SKIPS];
+    bool cells; /* KERNEL_CELLS and nothing else; or each other filter, KERNEL_LINEAR to the same bytes */
+    cpu_march_rows *march[KERNEL_MODES];
 } cpu_kernels;
 
-/* The kernels of the best instructions that `simd` allows and the computer has. */
-const cpu_kernels *cpu_kernels_float(vodr_simd simd);
-const cpu_kernels *cpu_kernels_double(vodr_simd simd);
+/* Portable kernels. */
+extern const cpu_kernels cpu_kernels_float, cpu_kernels_double;
+
+/* The kernels of the best instructions that `simd` allows and the computer has; cpu_kernels_float where that is none.
+ */
+const cpu_kernels *cpu_kernels_best(vodr_simd simd);
 
 #endif

@@ -7,7 +7,7 @@
 enum { TILE_W = CPU_TILE_PX, TILE_H = LANES / CPU_TILE_PX };
 
 /* Lane l is pixel (x + l%TILE_W, y + l/TILE_W); lanes outside the frame or below y1 get no samples. */
-KERNEL packet tile_rays(const kernel_frame *f, int32_t x, int32_t y, int32_t y1)
+KERNEL packet tile_rays(const kernel_frame *f, kernel_filter filter, int32_t x, int32_t y, int32_t y1)
 {
     packet rays;
     for (int l = 0; l < LANES; l++) {
@@ -16,7 +16,7 @@ KERNEL packet tile_rays(const kernel_frame *f, int32_t x, int32_t y, int32_t y1)
         if (px < f->camera.width_px && py < y1)
             ray = ray_make(f, px, py);
         for (int a = 0; a < 3; a++) {
-            rays.start[a][l] = (REAL)ray.start[a];
+            rays.start[a][l] = (REAL)(ray.start[a] + (double)place_shift(filter));
             rays.step[a][l] = (REAL)ray.step[a];
         }
         rays.count[l] = ray.count;
@@ -39,34 +39,28 @@ KERNEL void tile_store(const kernel_frame *f, int32_t x, int32_t y, int32_t y1, 
 }
 
 KERNEL void march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba, uint64_t *samples, kernel_mode mode,
-                       kernel_skip skip)
+                       kernel_filter filter)
 {
+    const lookup entries = {f->table.rgba};
     for (int32_t y = y0; y < y1; y += TILE_H)
         for (int32_t x = 0; x < f->camera.width_px; x += TILE_W) {
-            packet rays = tile_rays(f, x, y, y1);
-            packet_result result = march(f, f->table.rgba, &rays, mode, f->filter, skip, f->volume.type);
+            packet rays = tile_rays(f, filter, x, y, y1);
+            packet_result result = march(f, &entries, &rays, mode, filter, f->skip, f->volume.type);
             tile_store(f, x, y, y1, &result, rgba, samples);
         }
 }
 
-#define DEFINE_ONE(set, target, mode, skip)                                                                            \
-    target static void march_##set##_##mode##_##skip(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba,      \
-                                                     uint64_t *samples)                                                \
+#define DEFINE_ONE(set, target, filter, mode)                                                                          \
+    target static void set##_##mode(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba, uint64_t *samples)    \
     {                                                                                                                  \
-        march_rows(f, y0, y1, rgba, samples, mode, skip);                                                              \
-    }
-#define DEFINE_SKIPS(set, target, mode)                                                                                \
-    DEFINE_ONE(set, target, mode, KERNEL_SKIP_NONE)                                                                    \
-    DEFINE_ONE(set, target, mode, KERNEL_SKIP_EMPTY)
-#define ROW_SKIPS(set, mode)                                                                                           \
-    {                                                                                                                  \
-        march_##set##_##mode##_KERNEL_SKIP_NONE, march_##set##_##mode##_KERNEL_SKIP_EMPTY                              \
+        march_rows(f, y0, y1, rgba, samples, mode, filter);                                                            \
     }
 
-/* All variants for an instruction set, and the table of them. */
-#define DEFINE_MARCH(set, target)                                                                                      \
-    DEFINE_SKIPS(set, target, KERNEL_OVER)                                                                             \
-    DEFINE_SKIPS(set, target, KERNEL_LIT)                                                                              \
-    DEFINE_SKIPS(set, target, KERNEL_MIP)                                                                              \
-    static const cpu_kernels kernels_##set = {                                                                         \
-        #set, {ROW_SKIPS(set, KERNEL_OVER), ROW_SKIPS(set, KERNEL_LIT), ROW_SKIPS(set, KERNEL_MIP)}}
+/* The kernels of an instruction set, and the table of them. */
+#define DEFINE_MARCH(linkage, table, set, target, cells, filter)                                                       \
+    DEFINE_ONE(set, target, filter, KERNEL_OVER)                                                                       \
+    DEFINE_ONE(set, target, filter, KERNEL_LIT)                                                                        \
+    DEFINE_ONE(set, target, filter, KERNEL_MIP)                                                                        \
+    linkage const cpu_kernels table = {#set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP}}
+
+#define NOT_CELLS f->filter == KERNEL_CELLS ? KERNEL_LINEAR : f->filter

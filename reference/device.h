@@ -15,7 +15,6 @@ typedef struct device_march {
     kernel_frame frame;
     reference_numbers numbers;
     kernel_mode mode;
-    kernel_skip skip;
 } device_march;
 
 typedef struct device_ops {

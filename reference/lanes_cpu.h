@@ -16,7 +16,7 @@ typedef REAL real __attribute__((vector_size(64)));
 typedef WHOLE_OF(REAL) whole __attribute__((vector_size(64)));
 typedef whole mask;
 
-enum { LANES = sizeof(real) / sizeof(REAL) };
+enum { LANES = sizeof(real) / sizeof(REAL), MAX_BATCH = 1 };
 
 KERNEL real spread(REAL x)
 {
@@ -44,6 +44,11 @@ KERNEL whole floor_of(real x)
     return i + (to_real(i) > x);
 }
 
+KERNEL real floor_real(real x)
+{
+    return to_real(floor_of(x));
+}
+
 KERNEL whole pick_whole(mask m, whole a, whole b)
 {
     return (a & m) | (b & ~m);
@@ -52,6 +57,22 @@ KERNEL whole pick_whole(mask m, whole a, whole b)
 KERNEL real pick(mask m, real a, real b)
 {
     return (real)pick_whole(m, (whole)a, (whole)b);
+}
+
+KERNEL real smaller(real a, real b)
+{
+    return pick(a < b, a, b);
+}
+
+KERNEL real larger(real a, real b)
+{
+    return pick(a > b, a, b);
+}
+
+/* Moves into [0, 1]. */
+KERNEL real saturate(real x)
+{
+    return smaller(larger(x, spread(0)), spread(1));
 }
 
 KERNEL bool any_lane(mask m)
@@ -110,12 +131,36 @@ KERNEL real fetch_float(const float *values, whole index)
     return value;
 }
 
-KERNEL void fetch_entry(const void *rgba, whole index, real entry[4])
+/* A table in memory. */
+typedef struct lookup {
+    const REAL *rgba;
+} lookup;
+
+#ifdef LANES_OF_FLOAT
+#include "lanes_cpu_float.h"
+#else
+
+/* Packed cells are of use where speed is. */
+KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
 {
-    const REAL *table = rgba;
-    for (int c = 0; c < 4; c++)
-        for (int l = 0; l < LANES; l++)
-            entry[c][l] = table[4 * index[l] + c];
+    (void)v, (void)type;
+    for (int i = 0; i < 4; i++)
+        edge[i] = share[i % 3] = place[i % 3];
 }
+
+/* The colour between entry `index` and the one behind it. */
+KERNEL void fetch_colour(const lookup *table, whole index, real share, real colour[4])
+{
+    for (int c = 0; c < 4; c++) {
+        real next;
+        for (int l = 0; l < LANES; l++) {
+            colour[c][l] = table->rgba[4 * index[l] + c];
+            next[l] = table->rgba[4 * index[l] + 4 + c];
+        }
+        colour[c] = colour[c] + (next - colour[c]) * share;
+    }
+}
+
+#endif
 
 #endif

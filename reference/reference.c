@@ -11,7 +11,7 @@
 #include "blocks.h"
 #include "device.h"
 
-enum { MAX_TABLE = 1 << 20, MAX_BLOCK_VOX = 32768 };
+enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MAX_BLOCK_VOX = 32768, MOST_SAMPLES = 1 << 24 };
 
 /* A gradient of the whole window over this many finest voxels makes a whole surface. */
 static const double surface_vox = 1024;
@@ -222,32 +222,57 @@ static reference_status check_march(const reference *r, const reference_march_jo
                               (long long)voxels, INT32_MAX);
     if (job->numbers == REFERENCE_DOUBLE && r->ops != &device_cpu)
         return reference_fail(error, REFERENCE_INVALID, "double numbers are drawn on the CPU only");
-    if (t->columns < 2 || t->rows < 1 || (int64_t)t->columns * t->rows > MAX_TABLE)
-        return reference_fail(error, REFERENCE_INVALID, "the table is %dx%d, must be 2x1 to %d entries", t->columns,
-                              t->rows, MAX_TABLE);
+    if (t->columns < 2 || t->columns > MAX_COLUMNS || t->rows < 1 || (int64_t)t->columns * t->rows > MAX_TABLE)
+        return reference_fail(error, REFERENCE_INVALID,
+                              "the table is %dx%d, must have 2 to %d columns and at most %d entries", t->columns,
+                              t->rows, MAX_COLUMNS, MAX_TABLE);
     if (job->block_vox < 2 || job->block_vox > MAX_BLOCK_VOX)
         return reference_fail(error, REFERENCE_INVALID, "a block has %d voxels a side, must have 2 to %d",
                               job->block_vox, MAX_BLOCK_VOX);
-    if (job->camera.most > INT32_MAX / 2)
+    if (job->camera.most > MOST_SAMPLES)
         return reference_fail(error, REFERENCE_INVALID, "a ray has %lld samples, must have at most %d",
-                              (long long)job->camera.most, INT32_MAX / 2);
+                              (long long)job->camera.most, MOST_SAMPLES);
     return REFERENCE_OK;
 }
 
-/* The table in the numbers it is used in. */
+/* The table in the numbers it is used in, with copies of its last entries behind (kernel_types.h). */
 static void *convert_table(const reference_march_job *job)
 {
-    size_t count = 4 * (size_t)job->table.columns * (size_t)job->table.rows;
-    if (job->numbers == REFERENCE_DOUBLE) {
-        double *wide = malloc(count * sizeof *wide);
+    const reference_table *t = &job->table;
+    const bool wide = job->numbers == REFERENCE_DOUBLE;
+    size_t across = (size_t)t->columns + 1, down = (size_t)t->rows + 1;
+    void *rgba = malloc(4 * across * down * (wide ? sizeof(double) : sizeof(float)));
+    for (size_t i = 0; rgba && i < 4 * across * down; i++) {
+        size_t column = i / 4 % across, row = i / 4 / across;
+        column -= column == across - 1;
+        row -= row == down - 1;
+        double value = t->rgba[4 * (row * (across - 1) + column) + i % 4];
         if (wide)
-            memcpy(wide, job->table.rgba, count * sizeof *wide);
-        return wide;
+            ((double *)rgba)[i] = value;
+        else
+            ((float *)rgba)[i] = (float)value;
     }
-    float *narrow = malloc(count * sizeof *narrow);
-    for (size_t i = 0; narrow && i < count; i++)
-        narrow[i] = (float)job->table.rgba[i];
-    return narrow;
+    return rgba;
+}
+
+static bool column_shows(const reference_table *t, int32_t column)
+{
+    for (int32_t row = 0; row < t->rows; row++)
+        if (t->rgba[4 * ((size_t)row * (size_t)t->columns + (size_t)column) + 3] > 0)
+            return true;
+    return false;
+}
+
+/* The columns at which the function begins and ceases to show something; far outside where it does so at its end. */
+static void find_visible(const reference_table *t, double *first, double *last)
+{
+    int32_t lo = 0, hi = t->columns - 1;
+    while (lo < t->columns && !column_shows(t, lo))
+        lo++;
+    while (hi >= 0 && !column_shows(t, hi))
+        hi--;
+    *first = lo == 0 ? -1e30 : lo - 1;
+    *last = hi == t->columns - 1 ? 1e30 : hi + 1;
 }
 
 static reference_status need_blocks(reference *r, int32_t edge_vox, reference_stats *stats, vodr_error *error)
@@ -264,14 +289,14 @@ static reference_status need_blocks(reference *r, int32_t edge_vox, reference_st
 static kernel_table table_of(const reference_march_job *job, const void *rgba)
 {
     const reference_table *t = &job->table;
-    double columns = t->columns - 1;
-    return (kernel_table){.columns = t->columns,
-                          .rows = t->rows,
-                          .rgba = rgba,
-                          .scale = job->window_scale * columns,
-                          .offset = job->window_offset * columns,
-                          .gradient_scale =
-                              t->rows > 1 ? fabs(job->window_scale) / t->gradient_most * (t->rows - 1) : 0};
+    kernel_table k = {.columns = t->columns,
+                      .rows = t->rows,
+                      .rgba = rgba,
+                      .scale = job->window_scale,
+                      .offset = job->window_offset,
+                      .gradient_scale = t->rows > 1 ? fabs(job->window_scale) / t->gradient_most : 0};
+    find_visible(t, &k.first, &k.last);
+    return k;
 }
 
 static kernel_mode mode_of(const reference_march_job *job)
@@ -299,34 +324,35 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
     if (status != REFERENCE_OK)
         return status;
     double begin_ms = now_ms();
+    if (skips)
+        status = blocks_classify(&r->blocks, &job->table, job->window_scale, job->window_offset,
+                                 job->accel == REFERENCE_ACCEL_BEST, error);
+    if (status != REFERENCE_OK)
+        return status;
     void *table = convert_table(job);
-    uint8_t *distance = skips ? malloc(blocks_count(&r->blocks)) : NULL;
-    if (!table || (skips && !distance)) {
-        free(table);
-        free(distance);
+    if (!table)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
-    }
     device_march m = {.frame = {.camera = job->camera,
                                 .volume = {.type = r->volume.type, .voxels = r->volume.voxels},
                                 .table = table_of(job, table),
                                 .filter = filter_of(job),
+                                .skip = skips ? KERNEL_SKIP_EMPTY : KERNEL_SKIP_NONE,
                                 .termination = job->termination,
                                 .phong = job->shading == REFERENCE_PHONG,
                                 .surface_scale = fabs(job->window_scale) * surface_vox},
                       .numbers = job->numbers,
-                      .mode = mode_of(job),
-                      .skip = skips ? KERNEL_SKIP_EMPTY : KERNEL_SKIP_NONE};
+                      .mode = mode_of(job)};
     memcpy(m.frame.volume.dims_vox, r->volume.dims_vox, sizeof r->volume.dims_vox);
     if (skips) {
-        blocks_classify(&r->blocks, &job->table, job->window_scale, job->window_offset,
-                        job->accel == REFERENCE_ACCEL_BEST, distance);
-        m.frame.blocks = (kernel_blocks){.edge_vox = r->blocks.edge_vox, .distance = distance, .most = r->blocks.most};
+        m.frame.blocks = (kernel_blocks){.edge_vox = r->blocks.edge_vox,
+                                         .distance = r->blocks.distance,
+                                         .most = r->blocks.most,
+                                         .top = r->blocks.top};
         memcpy(m.frame.blocks.count, r->blocks.count, sizeof r->blocks.count);
     }
     stats->prepare_ms = now_ms() - begin_ms;
     status = r->ops->march(r->state, &m, rgba, stats, error);
     free(table);
-    free(distance);
     return status;
 }
 

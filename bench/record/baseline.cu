@@ -18,7 +18,9 @@
         }                                                                                                              \
     } while (0)
 
-static __global__ void baseline_kernel(kernel_frame f, cudaTextureObject_t table, float threshold, float4 *out)
+/* place = value*scale + offset is where a table of texels at half steps has the column of a value. */
+static __global__ void baseline_kernel(kernel_frame f, cudaTextureObject_t table, float scale, float offset,
+                                       float threshold, float4 *out)
 {
     int x = blockIdx.x * blockDim.x + threadIdx.x, y = blockIdx.y * blockDim.y + threadIdx.y;
     if (x >= f.camera.width_px || y >= f.camera.height_px)
@@ -29,7 +31,7 @@ static __global__ void baseline_kernel(kernel_frame f, cudaTextureObject_t table
     float4 sum = make_float4(0, 0, 0, 0);
     for (int n = 0; n < ray.count; n++) {
         float value = tex3D<float>(f.volume.texture, p.x, p.y, p.z);
-        float4 c = tex1D<float4>(table, value);
+        float4 c = tex1D<float4>(table, value * scale + offset);
         float through = 1 - sum.w;
         sum.x += c.x * through;
         sum.y += c.y * through;
@@ -88,6 +90,7 @@ static reference_status upload(const reference_volume *v, const reference_march_
 static reference_status draw(const reference_march_job *job, kernel_frame f, cudaTextureObject_t table, float4 *out,
                              double *ms, int rounds, vodr_error *error)
 {
+    const float columns = job->table.columns;
     cudaEvent_t begin, end;
     dim3 block(16, 16), grid((f.camera.width_px + 15) / 16, (f.camera.height_px + 15) / 16);
     TRY(cudaEventCreate(&begin));
@@ -95,7 +98,8 @@ static reference_status draw(const reference_march_job *job, kernel_frame f, cud
     for (int i = -1; i < rounds; i++) {
         float once_ms;
         TRY(cudaEventRecord(begin));
-        baseline_kernel<<<grid, block>>>(f, table, (float)job->termination, out);
+        baseline_kernel<<<grid, block>>>(f, table, (columns - 1) / columns, 0.5f / columns, (float)job->termination,
+                                         out);
         TRY(cudaGetLastError());
         TRY(cudaEventRecord(end));
         TRY(cudaEventSynchronize(end));

@@ -16,7 +16,7 @@
 #include "reference.h"
 #include "stopwatch.h"
 
-enum { COLUMNS = 1024, ROUNDS = 9 };
+enum { COLUMNS = 256, ROUNDS = 9 };
 
 /* ---- what both parts share ---- */
 
@@ -240,9 +240,12 @@ typedef struct timed {
     reference_shading shading;
     double first, opacity; /* of the table */
     double termination;
+    int32_t block_vox;
+    bool beside_baseline; /* its picture is held against the rival's, and the rival timed */
 } timed;
 
-/* The rival on the same frame as the row that ends rays early; how far its picture is from ours. */
+/* The rival on the same frame; how far its picture is from ours. A ray that one ends a sample before the other, as they
+ * round differently, differs by at most (1 - termination) * opacity. */
 static int time_baseline(const reference_volume *v, const char *volume_name, const char *view_name,
                          const reference_march_job *job, const double *ours)
 {
@@ -254,8 +257,8 @@ static int time_baseline(const reference_volume *v, const char *volume_name, con
         add_distance(&d, rgba, ours, 4 * 1024 * 1024);
         double median = stopwatch_median(times_ms, ROUNDS);
         printf("{\"result\": \"baseline\", \"volume\": \"%s\", \"view\": \"%s\", \"ms\": %.4f, \"least_ms\": %.4f, "
-               "\"most_ms\": %.4f, \"max_difference\": %.5f}\n",
-               volume_name, view_name, median, times_ms[0], times_ms[ROUNDS - 1], d.largest);
+               "\"most_ms\": %.4f, \"max_difference\": %.5f, \"termination\": %g}\n",
+               volume_name, view_name, median, times_ms[0], times_ms[ROUNDS - 1], d.largest, job->termination);
     }
     free(rgba);
     return good ? 0 : 1;
@@ -274,7 +277,7 @@ static int time_one(reference *r, const reference_volume *v, const char *volume_
                                .blend = t->blend,
                                .filter = REFERENCE_LINEAR,
                                .shading = t->shading,
-                               .block_vox = 8,
+                               .block_vox = t->block_vox,
                                .termination = t->termination,
                                .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
                                .window_scale = 1 / 255.0};
@@ -288,35 +291,48 @@ static int time_one(reference *r, const reference_volume *v, const char *volume_
     printf("{\"result\": \"time\", \"volume\": \"%s\", \"view\": \"%s\", \"size_px\": %d, \"method\": \"%s\", "
            "\"numbers\": "
            "\"%s\", \"blend\": \"%s\", \"accel\": \"%s\", \"shading\": \"%s\", \"ms\": %.4f, \"least_ms\": %.4f, "
-           "\"most_ms\": %.4f, \"samples\": %llu, \"gsamples_s\": %.1f, \"prepare_ms\": %.3f}\n",
+           "\"most_ms\": %.4f, \"samples\": %llu, \"gsamples_s\": %.1f, \"prepare_ms\": %.3f, \"block_vox\": %d, "
+           "\"termination\": %g}\n",
            volume_name, view_name, view->width_px, t->method, t->numbers_name, t->blend_name, t->accel_name,
            t->shading == REFERENCE_PHONG ? "phong" : "none", median, times_ms[0], times_ms[ROUNDS - 1],
-           (unsigned long long)stats.samples, (double)stats.samples / median * 1e-6, stats.prepare_ms);
+           (unsigned long long)stats.samples, (double)stats.samples / median * 1e-6, stats.prepare_ms, t->block_vox,
+           t->termination);
     fflush(stdout);
-    return strcmp(t->accel_name, "ends") == 0 ? time_baseline(v, volume_name, view_name, &job, rgba) : 0;
+    return t->beside_baseline ? time_baseline(v, volume_name, view_name, &job, rgba) : 0;
 }
 
 /* Rows: opaque enough to end rays, or so faint that none ends. */
+#define FAINT(method, rays, numbers, number)                                                                           \
+    {                                                                                                                  \
+        method, numbers, "over", "none", rays, number, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2, 8, false   \
+    }
+#define MAXIMUM(numbers, number, name, accel)                                                                          \
+    {                                                                                                                  \
+        "raycast", numbers, "mip", name, true, number, REFERENCE_MIP, accel, 0, 0, 1, 2, 8, false                      \
+    }
+#define SOLID(numbers, number, name, accel, shading, termination, block_vox, beside)                                   \
+    {                                                                                                                  \
+        "raycast", numbers, "over", name, true, number, REFERENCE_OVER, accel, shading, 0.3, 0.3, termination,         \
+            block_vox, beside                                                                                          \
+    }
 static const timed rows[] = {
-    {"raycast", "texture", "mip", "none", true, REFERENCE_TEXTURE, REFERENCE_MIP, REFERENCE_ACCEL_NONE, 0, 0, 1, 2},
-    {"raycast", "texture", "over", "none", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4,
-     2},
-    {"slices", "texture", "over", "none", false, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4,
-     2},
-    {"raycast", "float", "mip", "none", true, REFERENCE_FLOAT, REFERENCE_MIP, REFERENCE_ACCEL_NONE, 0, 0, 1, 2},
-    {"raycast", "float", "over", "none", true, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2},
-    {"slices", "float", "over", "none", false, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0, 1e-4, 2},
-    {"raycast", "texture", "over", "ends", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_NONE, 0, 0.3, 0.3,
-     0.95},
-    {"raycast", "texture", "over", "block", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_BLOCK, 0, 0.3, 0.3,
-     0.95},
-    {"raycast", "texture", "over", "best", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_BEST, 0, 0.3, 0.3,
-     0.95},
-    {"raycast", "float", "over", "best", true, REFERENCE_FLOAT, REFERENCE_OVER, REFERENCE_ACCEL_BEST, 0, 0.3, 0.3,
-     0.95},
-    {"raycast", "texture", "over", "best", true, REFERENCE_TEXTURE, REFERENCE_OVER, REFERENCE_ACCEL_BEST,
-     REFERENCE_PHONG, 0.3, 0.3, 0.95},
-    {"raycast", "texture", "mip", "block", true, REFERENCE_TEXTURE, REFERENCE_MIP, REFERENCE_ACCEL_BLOCK, 0, 0, 1, 2},
+    MAXIMUM("texture", REFERENCE_TEXTURE, "none", REFERENCE_ACCEL_NONE),
+    MAXIMUM("float", REFERENCE_FLOAT, "none", REFERENCE_ACCEL_NONE),
+    MAXIMUM("texture", REFERENCE_TEXTURE, "best", REFERENCE_ACCEL_BEST),
+    MAXIMUM("float", REFERENCE_FLOAT, "best", REFERENCE_ACCEL_BEST),
+    FAINT("raycast", true, "texture", REFERENCE_TEXTURE),
+    FAINT("slices", false, "texture", REFERENCE_TEXTURE),
+    FAINT("raycast", true, "float", REFERENCE_FLOAT),
+    FAINT("slices", false, "float", REFERENCE_FLOAT),
+    SOLID("texture", REFERENCE_TEXTURE, "none", REFERENCE_ACCEL_NONE, REFERENCE_UNLIT, 0.998, 8, true),
+    SOLID("texture", REFERENCE_TEXTURE, "block", REFERENCE_ACCEL_BLOCK, REFERENCE_UNLIT, 0.998, 8, false),
+    SOLID("texture", REFERENCE_TEXTURE, "best", REFERENCE_ACCEL_BEST, REFERENCE_UNLIT, 0.998, 8, false),
+    SOLID("float", REFERENCE_FLOAT, "best", REFERENCE_ACCEL_BEST, REFERENCE_UNLIT, 0.998, 8, true),
+    SOLID("texture", REFERENCE_TEXTURE, "best", REFERENCE_ACCEL_BEST, REFERENCE_UNLIT, 0.99, 8, true),
+    SOLID("texture", REFERENCE_TEXTURE, "best", REFERENCE_ACCEL_BEST, REFERENCE_PHONG, 0.998, 8, false),
+    SOLID("float", REFERENCE_FLOAT, "best", REFERENCE_ACCEL_BEST, REFERENCE_PHONG, 0.998, 8, false),
+    SOLID("texture", REFERENCE_TEXTURE, "best", REFERENCE_ACCEL_BEST, REFERENCE_UNLIT, 0.998, 16, false),
+    SOLID("texture", REFERENCE_TEXTURE, "best", REFERENCE_ACCEL_BEST, REFERENCE_UNLIT, 0.998, 4, false),
 };
 
 static int times(const reference_options *options, int side, const char *path, const char *name)
