@@ -143,6 +143,10 @@ $(BUILD)/libvodr.a: $(CMODEL)
 	ar rcs $@ $^
 
 $(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
+ifeq ($(shell uname -m),x86_64)
+$(BUILD)/reference/cpu_avx2.o: CFLAGS += -mavx2
+$(BUILD)/reference/cpu_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
+endif
 
 $(BUILD)/%.o: %.cu | $(GEN)
 	@mkdir -p $(@D)

@@ -16,8 +16,9 @@ typedef struct cpu_kernels {
     cpu_march_rows *march[KERNEL_MODES];
 } cpu_kernels;
 
-/* Portable kernels. */
+/* Portable kernels; and, on x86-64, those of an instruction set. */
 extern const cpu_kernels cpu_kernels_float, cpu_kernels_double;
+extern const cpu_kernels cpu_kernels_avx2, cpu_kernels_avx512;
 
 /* The kernels of the best instructions that `simd` allows and the computer has; cpu_kernels_float where that is none.
  */

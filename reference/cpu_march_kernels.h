@@ -1,5 +1,6 @@
 /* cpu_march_kernels.h - the functions of cpu_march.h for lanes of REAL, whose packets are tiles of pixels. Included
- * once by a file for each REAL; the variants are constants that the compiler folds into each copy of one loop. */
+ * once by a file for each REAL and instruction set; the variants are constants that the compiler folds into each copy
+ * of one loop. */
 #include "cpu_march.h"
 #include "kernel_march.h"
 #include "kernel_ray.h"
@@ -50,17 +51,17 @@ KERNEL void march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rg
         }
 }
 
-#define DEFINE_ONE(set, target, filter, mode)                                                                          \
-    target static void set##_##mode(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba, uint64_t *samples)    \
+#define DEFINE_ONE(set, filter, mode)                                                                                  \
+    static void set##_##mode(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba, uint64_t *samples)           \
     {                                                                                                                  \
         march_rows(f, y0, y1, rgba, samples, mode, filter);                                                            \
     }
 
 /* The kernels of an instruction set, and the table of them. */
-#define DEFINE_MARCH(linkage, table, set, target, cells, filter)                                                       \
-    DEFINE_ONE(set, target, filter, KERNEL_OVER)                                                                       \
-    DEFINE_ONE(set, target, filter, KERNEL_LIT)                                                                        \
-    DEFINE_ONE(set, target, filter, KERNEL_MIP)                                                                        \
-    linkage const cpu_kernels table = {#set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP}}
+#define DEFINE_MARCH(table, set, cells, filter)                                                                        \
+    DEFINE_ONE(set, filter, KERNEL_OVER)                                                                               \
+    DEFINE_ONE(set, filter, KERNEL_LIT)                                                                                \
+    DEFINE_ONE(set, filter, KERNEL_MIP)                                                                                \
+    const cpu_kernels table = {#set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP}}
 
 #define NOT_CELLS f->filter == KERNEL_CELLS ? KERNEL_LINEAR : f->filter

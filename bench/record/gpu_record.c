@@ -1,6 +1,7 @@
 /* gpu_record.c - the reference renderer on a device, held against the machine and timed: lines of JSON, one a result.
  *
  *   gpu_record DEVICE matrix CASES      random frames: fixed against the C model; float, every --accel, against the CPU
+ *   gpu_record cuda refuse              a volume that no card has room for
  *   gpu_record DEVICE times SIDE_VOX [VOLUME.raw NAME]
  *                                       milliseconds a frame, made-up volume or SIDE_VOX^3 bytes of a file
  * DEVICE is cuda or cpu. Exit 1 when something differs. */
@@ -281,9 +282,12 @@ static int time_one(reference *r, const reference_volume *v, const char *volume_
                                .termination = t->termination,
                                .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
                                .window_scale = 1 / 255.0};
+    double prepare_ms = 0, preprocess_ms = 0;
     for (int i = -1; i < ROUNDS; i++) {
         if (!march(r, job, t->numbers, t->accel, rgba, &stats))
             return 1;
+        prepare_ms = fmax(prepare_ms, stats.prepare_ms);
+        preprocess_ms = fmax(preprocess_ms, stats.preprocess_ms);
         if (i >= 0)
             times_ms[i] = stats.draw_ms;
     }
@@ -291,12 +295,13 @@ static int time_one(reference *r, const reference_volume *v, const char *volume_
     printf("{\"result\": \"time\", \"volume\": \"%s\", \"view\": \"%s\", \"size_px\": %d, \"method\": \"%s\", "
            "\"numbers\": "
            "\"%s\", \"blend\": \"%s\", \"accel\": \"%s\", \"shading\": \"%s\", \"ms\": %.4f, \"least_ms\": %.4f, "
-           "\"most_ms\": %.4f, \"samples\": %llu, \"gsamples_s\": %.1f, \"prepare_ms\": %.3f, \"block_vox\": %d, "
+           "\"most_ms\": %.4f, \"samples\": %llu, \"gsamples_s\": %.1f, \"prepare_ms\": %.3f, \"preprocess_ms\": %.3f, "
+           "\"block_vox\": %d, "
            "\"termination\": %g}\n",
            volume_name, view_name, view->width_px, t->method, t->numbers_name, t->blend_name, t->accel_name,
            t->shading == REFERENCE_PHONG ? "phong" : "none", median, times_ms[0], times_ms[ROUNDS - 1],
-           (unsigned long long)stats.samples, (double)stats.samples / median * 1e-6, stats.prepare_ms, t->block_vox,
-           t->termination);
+           (unsigned long long)stats.samples, (double)stats.samples / median * 1e-6, prepare_ms, preprocess_ms,
+           t->block_vox, t->termination);
     fflush(stdout);
     return t->beside_baseline ? time_baseline(v, volume_name, view_name, &job, rgba) : 0;
 }
@@ -387,13 +392,27 @@ static int times(const reference_options *options, int side, const char *path, c
     return failed;
 }
 
+/* A volume that no card has room for is refused by figure, before a voxel of it is read. */
+static int refuse(const reference_options *options)
+{
+    const reference_volume v = {{VODR_MAX_DIM_VOX, VODR_MAX_DIM_VOX, VODR_MAX_DIM_VOX}, REFERENCE_UINT8, NULL};
+    reference *r = NULL;
+    vodr_error error = {{0}};
+    reference_status status = reference_open(options, &v, &r, &error);
+    printf("{\"result\": \"refused\", \"status\": %d, \"sentence\": \"%s\"}\n", status, error.text);
+    reference_close(r);
+    return status == REFERENCE_NO_MEMORY ? 0 : 1;
+}
+
 int main(int argc, char **argv)
 {
     reference_options options = {.device = argc > 1 && strcmp(argv[1], "cuda") == 0 ? REFERENCE_CUDA : REFERENCE_CPU};
     if (argc == 4 && strcmp(argv[2], "matrix") == 0)
         return matrix(&options, atoi(argv[3]));
+    if (argc == 3 && strcmp(argv[2], "refuse") == 0)
+        return refuse(&options);
     if ((argc == 4 || argc == 6) && strcmp(argv[2], "times") == 0)
         return times(&options, atoi(argv[3]), argc == 6 ? argv[4] : NULL, argc == 6 ? argv[5] : "shells");
-    fputs("usage: gpu_record cuda|cpu matrix CASES | times SIDE_VOX [VOLUME.raw NAME]\n", stderr);
+    fputs("usage: gpu_record cuda|cpu matrix CASES | refuse | times SIDE_VOX [VOLUME.raw NAME]\n", stderr);
     return 2;
 }
