@@ -27,9 +27,10 @@ LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
 
 HW       := hw/parameters.txt hw/registers.txt
 MACHINES := $(sort $(wildcard hw/machines/*.txt))
-GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh
+GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh $(BUILD)/gen/energy_text.c
 CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vodr_hw.o
-HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c)))
+HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
+            $(BUILD)/gen/energy_text.o
 REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
              $(BUILD)/reference/$(if $(NVCC),device_cuda.o,device_no_cuda.o)
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
@@ -45,7 +46,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep contact-sheet fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -82,6 +83,10 @@ contact-sheet: $(BUILD)/vodr ## draw every real volume at hand into build/contac
 bench-model: $(BUILD)/vodr ## measure the model beside a software rasterizer, and write its table in the README again
 	@scripts/tables $(BUILD) model
 	@cat $(BUILD)/tables/model
+
+bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
+	@scripts/tables $(BUILD) sweep
+	@cat $(BUILD)/tables/sweep
 
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
@@ -130,6 +135,10 @@ $(BUILD)/gen/vodr_hw.c: $(BUILD)/generate $(HW) $(MACHINES)
 $(BUILD)/gen/vodr_hw.vh: $(BUILD)/generate $(HW) $(MACHINES)
 	@mkdir -p $(@D)
 	$(BUILD)/generate verilog $(HW) $(MACHINES) > $@.tmp && mv $@.tmp $@
+
+$(BUILD)/gen/energy_text.c: $(BUILD)/generate hw/energy.txt
+	@mkdir -p $(@D)
+	$(BUILD)/generate c-text hw_energy_text hw/energy.txt > $@.tmp && mv $@.tmp $@
 
 $(BUILD)/gen/%.o: $(BUILD)/gen/%.c
 	$(COMPILE) -c -o $@ $<

@@ -14,7 +14,7 @@
 
 static const char program[] = "table_cycles";
 
-enum { VIEWS = 2, LATENCIES = 4, REPEAT = 5, CLOCKED_SLICES = 16 };
+enum { VIEWS = 2, LATENCIES = 4, REPEAT = 15, CLOCKED_SLICES = 16 };
 
 static const double view_angles_deg[VIEWS][2] = {{0, 0}, {30, 30}};
 static const char *const latencies[LATENCIES] = {"20", "50", "100", "200"};

@@ -32,7 +32,7 @@ static bool is_last_fragment(clocked *c, const span *s)
     slice_generator rest = slice_generator_start(c->view, &b->box, b->k0, b->k1, reverse);
     brick_slice slice;
     while (slice_generator_next(&rest, &slice)) {
-        if (reverse ? slice.k >= c->rows.slice->k : slice.k <= c->rows.slice->k)
+        if (reverse ? slice.k >= c->raster_slice.k : slice.k <= c->raster_slice.k)
             continue;
         bool found;
         clocked_probe_slice(&slice, &b->bound, &found);
@@ -69,7 +69,7 @@ static void offer(clocked *c)
     if (!c->visit_accepted)
         begin_visit(c, number);
     bool last = is_last_fragment(c, &c->current);
-    c->failed |= !fragment_ring_push(&c->door, clocked_shade(c, number, c->rows.slice, &c->current));
+    c->failed |= !fragment_ring_push(&c->door, clocked_shade(c, number, &c->raster_slice, &c->current));
     c->visit_accepted = true;
     c->counters.fragments++;
     c->accepted++;
@@ -112,7 +112,7 @@ void clock_rasterizer(clocked *c)
         c->slice_link.popped = c->now;
         c->raster_slice = c->slice;
         rasterizer_start(&c->rows, &c->raster_slice, &visit_at(c, c->slice_visit)->brick.bound);
-        c->next_row = c->rows.y;
+        c->next_row = c->rows.bound.y0;
         c->done_px = 0;
         c->slice_has_fragments = false;
         c->have_span = rasterizer_next(&c->rows, &c->current);

@@ -5,9 +5,7 @@
 fragment clocked_shade(clocked *c, int64_t number, const brick_slice *slice, const span *s)
 {
     const candidate *b = &visit_at(c, number)->brick;
-    span one = {.y = s->y, .x0 = s->x0 + c->done_px, .x1 = s->x0 + c->done_px + 1};
-    for (int i = 0; i < 3; i++)
-        one.a[i] = s->a[i] + c->done_px * slice->plane.step_u[i];
+    const span one = {.y = s->y, .x0 = s->x0 + c->done_px, .x1 = s->x0 + c->done_px + 1};
     if (!c->visit_accepted)
         texture_unit_load(&c->texture, b->brick, &b->box);
     c->counters.texture_load_bytes += texture_unit_fetched(&c->texture, 1);

@@ -8,7 +8,7 @@ int64_t clocked_probe_slice(const brick_slice *slice, const px_rect *bound, bool
     rasterizer rows;
     span s;
     rasterizer_start(&rows, slice, bound);
-    int32_t first = rows.y;
+    int32_t first = rows.bound.y0;
     *found = rasterizer_next(&rows, &s);
     return *found ? s.y + 1 - first : rows.bound.y1 - first;
 }
@@ -22,10 +22,10 @@ void clocked_search(clocked *c)
         slice_generator slices =
             slice_generator_start(c->view, &v.brick.box, v.brick.k0, v.brick.k1, c->m->blend == VODR_BLEND_UNDER);
         brick_slice slice;
-        v.work_cycles += c->m->brick_setup_cycles;
         while (!found && slice_generator_next(&slices, &slice))
             v.work_cycles += clocked_probe_slice(&slice, &v.brick.bound, &found);
     }
+    v.work_cycles += volume_divider_work(&c->divider);
     c->work_left = v.work_cycles;
     c->last_found = !found;
     if (!found)

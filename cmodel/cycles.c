@@ -64,51 +64,39 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     return NULL;
 }
 
-/* Room for one more of so many items of `size` bytes; false, and nothing changed, when there is none. */
-static bool make_room(cycles *c, void *items, size_t count, size_t *room, size_t size)
+/* Room for one more op; false when there is none. */
+static bool make_room(cycles *c)
 {
-    void **at = items;
-    if (count < *room)
+    if (c->op_count < c->op_room)
         return true;
-    size_t wanted = *room ? 2 * *room : 1024;
-    void *grown = realloc(*at, wanted * size);
+    size_t room = c->op_room ? 2 * c->op_room : 1024;
+    cycle_op *grown = realloc(c->ops, room * sizeof *grown);
     c->failed |= !grown;
     if (!grown)
         return false;
-    *at = grown;
-    *room = wanted;
+    c->ops = grown;
+    c->op_room = room;
     return true;
 }
 
-/* Drops the ops that are done. Details are numbered from the first op kept. */
+/* Drops the ops that are done. */
 static void drop_ops(cycles *c)
 {
-    int32_t first = -1;
     if (!c->op_next)
         return;
     c->op_count -= c->op_next;
     memmove(c->ops, c->ops + c->op_next, c->op_count * sizeof *c->ops);
     c->op_next = 0;
-    for (size_t i = 0; i < c->op_count; i++)
-        if (c->ops[i].detail >= 0) {
-            first = first < 0 ? c->ops[i].detail : first;
-            c->ops[i].detail -= first;
-        }
-    size_t dropped = first < 0 ? c->detail_count : (size_t)first;
-    c->detail_count -= dropped;
-    if (c->detail_count)
-        memmove(c->details, c->details + dropped, c->detail_count * sizeof *c->details);
 }
 
-static void add_op(cycles *c, cycle_op op)
+/* One more op, for the caller to fill in; NULL when memory ran out. */
+static cycle_op *add_op(cycles *c)
 {
-    if (!make_room(c, &c->ops, c->op_count, &c->op_room, sizeof *c->ops))
-        return;
-    c->ops[c->op_count++] = op;
     if (c->eager && c->op_count >= EAGER_OPS) {
         pump(c);
         drop_ops(c);
     }
+    return make_room(c) ? &c->ops[c->op_count++] : NULL;
 }
 
 /* The ops of the visit before are complete now, and the next brick is known. */
@@ -133,15 +121,20 @@ void cycles_visit(cycles *c, const cycle_visit *v)
 
 void cycles_slice(cycles *c)
 {
-    add_op(c, (cycle_op){.kind = OP_SLICE, .detail = -1});
+    cycle_op *op = add_op(c);
+    if (op)
+        op->kind = OP_SLICE;
     c->new_slice = true;
     c->slice_added = 0;
 }
 
 void cycles_rows(cycles *c, int32_t count)
 {
-    if (count)
-        add_op(c, (cycle_op){.kind = OP_ROWS, .px.count = count, .detail = -1});
+    cycle_op *op = count ? add_op(c) : NULL;
+    if (!op)
+        return;
+    op->kind = OP_ROWS;
+    op->px.count = count;
 }
 
 /* Adds pixels to a run where they go on from it: in its last row, or as a row of their own below. A row of its own has
@@ -176,14 +169,16 @@ static bool prolong(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
     return before->kind == OP_RUN && before->killed == killed && lengthen(&before->px, x, y, count, new_row);
 }
 
-static void add_run(cycles *c, int32_t x, int32_t y, int32_t count, bool killed, int32_t detail)
+static void add_run(cycles *c, int32_t x, int32_t y, int32_t count, bool killed, const cycle_access *access)
 {
-    cycle_op op = {.kind = OP_RUN, .px = {.count = count, .x = x, .y = y, .first = count}, .killed = killed};
-    op.detail = detail;
-    op.slice_start = c->new_slice;
-    op.miss = detail >= 0 && c->details[detail].miss;
+    cycle_op *op = add_op(c);
+    if (op)
+        *op = (cycle_op){.kind = OP_RUN,
+                         .px = {.count = count, .x = x, .y = y, .first = count},
+                         .access = *access,
+                         .slice_start = c->new_slice,
+                         .killed = killed};
     c->new_slice = false;
-    add_op(c, op);
 }
 
 /* Fragments join the visit and the slice, but for those that are killed, which no hazard concerns. */
@@ -195,18 +190,16 @@ static void tally(cycles *c, int32_t count, bool killed)
 
 void cycles_hits(cycles *c, int32_t x, int32_t y, int32_t count, bool killed)
 {
+    static const cycle_access hit = {0};
     if (!prolong(c, x, y, count, killed))
-        add_run(c, x, y, count, killed, -1);
+        add_run(c, x, y, count, killed, &hit);
     tally(c, count, killed);
 }
 
-void cycles_access(cycles *c, const cycle_run *run)
+void cycles_run(cycles *c, int32_t x, int32_t y, int32_t count, const cycle_access *access)
 {
-    tally(c, run->count, false);
-    if (!make_room(c, &c->details, c->detail_count, &c->detail_room, sizeof *c->details))
-        return;
-    c->details[c->detail_count] = *run;
-    add_run(c, run->x, run->y, run->count, false, (int32_t)c->detail_count++);
+    add_run(c, x, y, count, false, access);
+    tally(c, count, false);
 }
 
 void cycles_flush_line(cycles *c, int64_t line)
@@ -222,9 +215,9 @@ static void flush(cycles *c)
     while (cycles_grant(c))
         ;
     for (; c->dirty.count; cycle_ring_pop(&c->dirty)) {
-        const cycle_run run = {.evicts = true, .victim = *cycle_ring_front(&c->dirty)};
+        const cycle_access access = {.evicts = true, .victim = (int32_t)*cycle_ring_front(&c->dirty)};
         int64_t cycle;
-        cycles_evict(c, &run, max64(c->raster - 1, c->last_pop), &cycle);
+        cycles_evict(c, &access, max64(c->raster - 1, c->last_pop), &cycle);
         cycles_grant(c);
     }
 }
@@ -254,7 +247,6 @@ void cycles_free(cycles *c)
         return;
     free(c->ops);
     free(c->recents);
-    free(c->details);
     segment_ring_free(&c->door);
     segment_ring_free(&c->tagged);
     stretch_ring_free(&c->pops);

@@ -14,16 +14,14 @@ typedef struct cycle_visit {
     int64_t load_address; /* of the brick in memory */
 } cycle_visit;
 
-/* Consecutive fragments in one line of the pixel cache, one access each. */
-typedef struct cycle_run {
-    int32_t x, y, count; /* at most 32 when handed over */
-    uint32_t written;    /* bit i: fragment i writes its pixel */
-    bool killed;         /* dropped by kill_transparent: they make no access */
-    bool miss;           /* the first of them missed, */
-    bool reads;          /* and its line is read, not filled with zeros */
-    bool evicts;         /* and a dirty line has to leave */
-    int64_t line, victim;
-} cycle_run;
+/* What the accesses of a run, one a fragment of a row, do beyond hitting. */
+typedef struct cycle_access {
+    int32_t line, victim; /* its number, and that of the dirty line which has to leave */
+    uint32_t written;     /* written through: bit i: fragment i writes its pixel */
+    bool miss;            /* the first access missed, */
+    bool reads;           /* and the line is read, not filled with zeros */
+    bool evicts;          /* and a dirty line has to leave */
+} cycle_access;
 
 typedef struct cycles cycles;
 
@@ -35,8 +33,9 @@ void cycles_rows(cycles *c, int32_t count); /* rows without fragments */
 /* Fragments that hit, or that kill_transparent dropped: none of them is written through. */
 void cycles_hits(cycles *c, int32_t x, int32_t y, int32_t count, bool killed);
 
-/* Any other run: its first access missed, or the cache writes through. */
-void cycles_access(cycles *c, const cycle_run *run);
+/* Any other run: its first access missed and the others, in this line or the next, hit; or, at most 32 fragments of a
+ * line, the cache writes through. */
+void cycles_run(cycles *c, int32_t x, int32_t y, int32_t count, const cycle_access *access);
 void cycles_flush_line(cycles *c, int64_t line); /* a dirty line at the frame's end, after the last run */
 
 /* The end of the frame: work_cycles of the divider after the last visit. False when memory ran out on the way. */

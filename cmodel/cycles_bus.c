@@ -82,19 +82,20 @@ static void grant_load(cycles *c, int64_t cycle)
 
 /* A blocking miss looked up in `cycle`, with no other fill or write under way: loads that the bus takes before it come
  * first, then its fill, then its write-back, before anything else can ask. */
-void cycles_miss_at_once(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start, int64_t cycle)
+void cycles_miss_at_once(cycles *c, const cycle_access *access, const pixel_rows *px, bool slice_start, int64_t cycle)
 {
     int64_t moved = cycle + 1;
-    if (run->evicts)
+    if (access->evicts)
         moved = max64(moved, max64(c->last_read + c->m->blend_cycles, c->write_granted + 1));
     int64_t filled = moved, raised;
-    while ((run->reads || run->evicts) && (raised = load_raised(c)) != CYCLE_UNKNOWN && eligible(c, raised) <= moved)
+    while ((access->reads || access->evicts) && (raised = load_raised(c)) != CYCLE_UNKNOWN &&
+           eligible(c, raised) <= moved)
         grant_load(c, eligible(c, raised));
-    if (run->reads)
-        filled = memory_grant(&c->memory, eligible(c, moved), run->line * c->line_bytes, c->line_bytes, false);
-    if (run->evicts) {
+    if (access->reads)
+        filled = memory_grant(&c->memory, eligible(c, moved), access->line * c->line_bytes, c->line_bytes, false);
+    if (access->evicts) {
         c->write_granted = eligible(c, moved);
-        happened(c, memory_grant(&c->memory, c->write_granted, run->victim * c->line_bytes, c->line_bytes, true));
+        happened(c, memory_grant(&c->memory, c->write_granted, access->victim * c->line_bytes, c->line_bytes, true));
     }
     c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(moved - cycle - 1);
     c->n.stalls[VODR_STALL_FILL] += (uint64_t)(filled + 1 - moved);

@@ -25,7 +25,7 @@ static int64_t hazard(const cycles *c, int32_t x, int32_t y)
 /* How many fragments of a segment may go at once. */
 static int32_t stride(const cycles *c, const segment *s)
 {
-    bool miss = s->run.miss && s->offset == 0;
+    bool miss = s->access.miss && s->offset == 0;
     bool single = miss || c->through || s->slice_start || c->slice_reads < c->m->blend_cycles;
     return single ? 1 : s->count;
 }
@@ -47,11 +47,11 @@ static bus_request *request(cycles *c, request_ring *queue, int64_t raised, int6
 /* Writing through: the entry of the write FIFO that the segment's first fragment took. */
 static void take_entry(cycles *c, const segment *s, int64_t cycle)
 {
-    bool writes = s->run.written >> s->offset & 1;
+    bool writes = s->access.written >> s->offset & 1;
     int64_t written = cycle + c->m->blend_cycles;
     keep(c, cycle_ring_push(&c->releases, writes ? CYCLE_UNKNOWN : written));
     if (writes) {
-        bus_request *r = request(c, &c->write_requests, written, s->run.line, c->pixel_bytes);
+        bus_request *r = request(c, &c->write_requests, written, s->access.line, c->pixel_bytes);
         if (r) {
             r->line = -1;
             r->entry = c->entries;
@@ -82,22 +82,22 @@ static void consume(segment_ring *r, int32_t count)
 /* ---- misses ---- */
 
 /* A dirty line moves to the write buffer, once blends are over and the buffer is free; false when that is unknown. */
-bool cycles_evict(cycles *c, const cycle_run *run, int64_t earliest, int64_t *cycle)
+bool cycles_evict(cycles *c, const cycle_access *access, int64_t earliest, int64_t *cycle)
 {
     *cycle = earliest;
-    if (!run->evicts)
+    if (!access->evicts)
         return true;
     if (c->write_pending)
         return false;
     *cycle = max64(earliest, max64(c->last_read + c->m->blend_cycles, c->write_granted + 1));
     c->write_pending = true;
-    request(c, &c->write_requests, *cycle, run->victim, c->line_bytes);
+    request(c, &c->write_requests, *cycle, access->victim, c->line_bytes);
     return true;
 }
 
-static void request_fill(cycles *c, const cycle_run *run, int64_t cycle)
+static void request_fill(cycles *c, const cycle_access *access, int64_t cycle)
 {
-    request(c, &c->fill_requests, cycle, run->line, c->line_bytes);
+    request(c, &c->fill_requests, cycle, access->line, c->line_bytes);
 }
 
 void cycles_begin_miss(cycles *c, int64_t cycle)
@@ -107,18 +107,18 @@ void cycles_begin_miss(cycles *c, int64_t cycle)
 }
 
 /* Sees the miss under way, the run's first access, to its end; false when that depends on the bus. */
-bool cycles_resolve_miss(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start)
+bool cycles_resolve_miss(cycles *c, const cycle_access *access, const pixel_rows *px, bool slice_start)
 {
     if (c->miss == MISS_EVICT) {
         int64_t cycle;
-        if (!cycles_evict(c, run, c->miss_cycle + 1, &cycle))
+        if (!cycles_evict(c, access, c->miss_cycle + 1, &cycle))
             return false;
         c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(cycle - c->miss_cycle - 1);
         c->miss_cycle = cycle;
         c->miss = MISS_FILL;
-        c->fill_done = run->reads ? CYCLE_UNKNOWN : cycle;
-        if (run->reads)
-            request_fill(c, run, cycle);
+        c->fill_done = access->reads ? CYCLE_UNKNOWN : cycle;
+        if (access->reads)
+            request_fill(c, access, cycle);
     }
     if (c->fill_done == CYCLE_UNKNOWN)
         return false;
@@ -160,7 +160,7 @@ static bool tag_free(cycles *c, const segment *s, int64_t *cycle, int64_t *lengt
     } else {
         *length = -number;
     }
-    if (!s->run.miss || s->offset)
+    if (!s->access.miss || s->offset)
         return true;
     number = c->miss_tags - c->m->nonblocking_misses;
     if (number >= 0) {
@@ -173,14 +173,14 @@ static bool tag_free(cycles *c, const segment *s, int64_t *cycle, int64_t *lengt
     for (size_t i = 0; i < c->tagged.count; i++) {
         const segment *t = segment_ring_at(&c->tagged, i);
         bool left = i == 0 && c->miss == MISS_FILL;
-        if (!left && t->run.miss && !t->offset && t->run.evicts && t->run.victim == s->run.line)
+        if (!left && t->access.miss && !t->offset && t->access.evicts && t->access.victim == s->access.line)
             return false;
     }
     for (size_t i = 0; i < c->write_requests.count; i++)
-        if (request_ring_at(&c->write_requests, i)->line == s->run.line)
+        if (request_ring_at(&c->write_requests, i)->line == s->access.line)
             return false;
     for (size_t i = 0; i < c->departures.count; i++)
-        if (departure_ring_at(&c->departures, i)->line == s->run.line)
+        if (departure_ring_at(&c->departures, i)->line == s->access.line)
             *cycle = max64(*cycle, departure_ring_at(&c->departures, i)->granted + 1);
     return true;
 }
@@ -204,7 +204,7 @@ static bool pop_segment(cycles *c)
     if (!entry_free(c, c->tag_count, &cycle) || (c->nonblocking && !tag_free(c, s, &cycle, &length)))
         return false;
     c->n.stalls[VODR_STALL_CACHE] += (uint64_t)(cycle - head);
-    int32_t count = c->nonblocking ? (c->through || (s->run.miss && !s->offset) ? 1 : s->count) : stride(c, s);
+    int32_t count = c->nonblocking ? (c->through || (s->access.miss && !s->offset) ? 1 : s->count) : stride(c, s);
     count = length < count ? (int32_t)length : count;
     if (!c->nonblocking) {
         int64_t clear = max64(cycle, hazard(c, s->px.x + s->offset, s->px.y));
@@ -219,13 +219,13 @@ static bool pop_segment(cycles *c)
         tagged.count = count;
         tagged.cycle = cycle;
         keep(c, segment_ring_push(&c->tagged, tagged));
-        if (s->run.miss && !s->offset) {
+        if (s->access.miss && !s->offset) {
             c->miss_tags++;
-            if (s->run.reads)
-                request_fill(c, &s->run, cycle + 1);
+            if (s->access.reads)
+                request_fill(c, &s->access, cycle + 1);
         }
         consume(&c->door, count);
-    } else if (s->run.miss && !s->offset) {
+    } else if (s->access.miss && !s->offset) {
         cycles_begin_miss(c, cycle);
     } else {
         read_segment_pixels(c, s, count, cycle);
@@ -240,7 +240,7 @@ bool cycles_advance_tags(cycles *c)
     for (;;) {
         if (c->miss != MISS_NONE && !c->nonblocking) {
             const segment *s = segment_ring_front(&c->door);
-            if (!cycles_resolve_miss(c, &s->run, &s->px, s->slice_start))
+            if (!cycles_resolve_miss(c, &s->access, &s->px, s->slice_start))
                 return moved;
             if (c->through)
                 take_entry(c, s, c->last_read);
@@ -257,7 +257,7 @@ bool cycles_advance_tags(cycles *c)
 static bool read_segment(cycles *c)
 {
     segment *s = segment_ring_front(&c->tagged);
-    bool miss = s->run.miss && !s->offset;
+    bool miss = s->access.miss && !s->offset;
     if (s->slice_start)
         c->slice_reads = 0;
     if (c->miss == MISS_NONE) {
@@ -276,15 +276,15 @@ static bool read_segment(cycles *c)
     }
     if (c->miss == MISS_EVICT) {
         int64_t cycle;
-        if (!cycles_evict(c, &s->run, c->miss_cycle, &cycle))
+        if (!cycles_evict(c, &s->access, c->miss_cycle, &cycle))
             return false;
-        cycle += s->run.evicts;
+        cycle += s->access.evicts;
         c->n.stalls[VODR_STALL_WRITE_BACK] += (uint64_t)(cycle - c->miss_cycle);
         c->miss_cycle = cycle;
         c->miss = MISS_FILL;
     }
     int64_t cycle = c->miss_cycle;
-    if (s->run.reads) {
+    if (s->access.reads) {
         if (!c->fills.count)
             return false;
         cycle = max64(cycle, *cycle_ring_front(&c->fills) + 1);

@@ -23,8 +23,25 @@ void cycles_divide(cycles *c, int64_t number)
     happened(c, v->divided);
 }
 
+/* Lets room in the FIFO delay the rasterizer, for all fragments that glided since it was last asked about: fragment n
+ * is accepted in max(accepted(n-1), taken(n - FIFO)) + 1, and as no cycle takes two, what delays the last of a row of
+ * fragments delays it by all that any of them waits. */
+static void settle_raster(cycles *c)
+{
+    int64_t room = c->accepted - 1 - c->fifo, length;
+    if (!c->glided)
+        return;
+    c->glided = false;
+    c->last_accept = c->raster - 1;
+    if (room >= 0)
+        c->last_accept = max64(c->last_accept, stretch_cycle(&c->pops, room, &length) + 1);
+    c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(c->last_accept + 1 - c->raster);
+    c->raster = c->last_accept + 1;
+}
+
 static void take_slice(cycles *c)
 {
+    settle_raster(c);
     int64_t ready = c->slice_made + c->m->slice_setup_cycles + 1;
     c->slice_made = max64(ready, c->slice_taken + 1);
     c->n.stalls[VODR_STALL_SLICE] += (uint64_t)(c->slice_made - ready);
@@ -37,6 +54,7 @@ static void take_slice(cycles *c)
 /* Offers the rest of a run; false when it is unknown when the texture unit accepts it. */
 static bool offer(cycles *c, const cycle_op *op)
 {
+    settle_raster(c);
     int64_t cycle = c->raster, length = op->px.count - c->op_done, number = c->accepted - c->fifo;
     if (c->loading) {
         const visit_state *v = visit_at(c, c->current);
@@ -59,13 +77,12 @@ static bool offer(cycles *c, const cycle_op *op)
     if (!s)
         return false;
     *s = (segment){.px = op->px,
+                   .access = op->access,
                    .killed = op->killed,
                    .slice_start = op->slice_start && !c->op_done,
                    .offset = c->op_done,
                    .count = (int32_t)length,
                    .cycle = open};
-    if (op->detail >= 0)
-        s->run = c->details[op->detail];
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
@@ -90,59 +107,78 @@ static bool may_conflict(const cycles *c, int32_t x, int32_t y, bool slice_start
     return false;
 }
 
+/* The visit's first fragment waits for its brick; false when it is unknown when that is loaded. */
+static bool wait_for_load(cycles *c)
+{
+    cycles_finish_load(c);
+    int64_t loaded = visit_at(c, c->current)->loaded;
+    if (loaded == CYCLE_UNKNOWN)
+        return false;
+    int64_t ready = max64(c->raster, loaded + 1);
+    c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(ready - c->raster);
+    c->raster = ready;
+    c->loading = false;
+    return true;
+}
+
+/* The next fragments are accepted and go on into the cache; the cycle in which it takes the first. */
+static int64_t take(cycles *c, int32_t count)
+{
+    int64_t head = max64(c->raster + c->latency, c->last_pop + 1), cycle = max64(head, c->cache_free);
+    c->n.stalls[VODR_STALL_CACHE] += (uint64_t)(cycle - head);
+    c->raster += count;
+    c->accepted += count;
+    c->visit_accepted += count;
+    c->tag_count += count;
+    pop(c, count, cycle);
+    return cycle;
+}
+
+/* A miss, and behind its fill its write-back: nobody else can ask for the bus before both are served. A write-back
+ * without a fill can be late, and meet the next miss. */
+static void see_miss_through(cycles *c, const cycle_op *op, bool slice_start, int64_t cycle)
+{
+    const cycle_access *access = &op->access;
+    if (!c->write_pending && (access->reads || !access->evicts)) {
+        cycles_miss_at_once(c, access, &op->px, slice_start, cycle);
+        return;
+    }
+    cycles_begin_miss(c, cycle);
+    while (!cycles_resolve_miss(c, access, &op->px, slice_start) && cycles_grant(c))
+        ;
+    while (access->reads && c->write_pending && cycles_grant(c))
+        ;
+}
+
 /* Moves the rest of a run of hits, or a miss, from the rasterizer into a blocking cache at once; false when it has to
  * go step by step. Nothing may be on the way before it. Then, the FIFO being longer than the way to the blender, its
- * room is what delays acceptance but never a pop: pop(n - FIFO) + 1 + latency <= pop(n - FIFO) + FIFO <= pop(n). A miss
- * can be seen through to its end when the rasterizer cannot come to the visit's last fragment meanwhile: nothing else
- * it does asks for the bus. */
+ * room is what delays acceptance but never a pop: pop(n - FIFO) + 1 + latency <= pop(n - FIFO) + FIFO <= pop(n). So the
+ * rasterizer is told of the delay later, by settle_raster(). A miss can be seen through to its end when the rasterizer
+ * cannot come to the visit's last fragment meanwhile: nothing else it does asks for the bus. */
 static bool glide(cycles *c, const cycle_op *op)
 {
     if (!c->glides || c->door.count || c->miss != MISS_NONE || op->killed)
         return false;
-    bool miss = op->miss && c->op_done == 0;
-    int64_t count = miss ? 1 : op->px.count - c->op_done, ready = c->raster, length;
+    bool miss = op->access.miss && c->op_done == 0;
+    int32_t rest = op->px.count - c->op_done;
     if (miss && !c->eager && c->visit_fragments - c->visit_accepted <= c->fifo + 1)
         return false;
-    if (c->loading) {
-        cycles_finish_load(c);
-        int64_t loaded = visit_at(c, c->current)->loaded;
-        if (loaded == CYCLE_UNKNOWN)
-            return false;
-        ready = max64(ready, loaded + 1);
-    }
-    int32_t x = op->px.x + c->op_done;
-    bool slice_start = c->slice_starts || (op->slice_start && c->op_done == 0);
-    if (may_conflict(c, x, op->px.y, slice_start, count))
+    if (c->loading && !wait_for_load(c))
         return false;
-    int64_t head = max64(ready + c->latency, c->last_pop + 1), cycle = max64(head, c->cache_free);
-    int64_t accept = ready + count - 1, room = c->accepted + count - 1 - c->fifo;
-    if (room >= c->popped)
-        accept = max64(accept, cycle + (room - c->popped) + 1);
-    else if (room >= 0)
-        accept = max64(accept, stretch_cycle(&c->pops, room, &length) + 1);
-    c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(ready - c->raster);
-    c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(accept - (ready + count - 1));
-    c->n.stalls[VODR_STALL_CACHE] += (uint64_t)(cycle - head);
-    c->loading = c->slice_starts = false;
-    c->accepted += count;
-    c->visit_accepted += count;
-    c->last_accept = accept;
-    c->raster = accept + 1;
-    pop(c, (int32_t)count, cycle);
-    c->tag_count += count;
-    c->op_done += (int32_t)count;
-    if (!miss) {
-        read_pixels(c, &op->px, c->op_done - (int32_t)count, slice_start, (int32_t)count, cycle);
-        return true;
+    bool slice_start = c->slice_starts || (op->slice_start && c->op_done == 0);
+    if (may_conflict(c, op->px.x + c->op_done, op->px.y, slice_start, miss ? 1 : rest))
+        return false;
+    c->slice_starts = false;
+    c->glided = true;
+    if (miss) {
+        see_miss_through(c, op, slice_start, take(c, 1));
+        c->op_done = 1;
+        if (--rest == 0 || may_conflict(c, op->px.x + 1, op->px.y, false, rest))
+            return true;
+        slice_start = false;
     }
-    const cycle_run *run = &c->details[op->detail];
-    if (!c->write_pending && (run->reads || !run->evicts)) {
-        cycles_miss_at_once(c, run, &op->px, slice_start, cycle);
-        return true;
-    }
-    cycles_begin_miss(c, cycle);
-    while (!cycles_resolve_miss(c, run, &op->px, slice_start) && cycles_grant(c))
-        ;
+    read_pixels(c, &op->px, c->op_done, slice_start, rest, take(c, rest));
+    c->op_done += rest;
     return true;
 }
 
@@ -155,6 +191,7 @@ bool cycles_advance_raster(cycles *c)
         if (op->kind == OP_SLICE) {
             take_slice(c);
         } else if (op->kind == OP_ROWS) {
+            settle_raster(c);
             c->raster += op->px.count;
             c->n.blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)op->px.count;
         } else if (!glide(c, op) && !offer(c, op)) {
@@ -166,6 +203,7 @@ bool cycles_advance_raster(cycles *c)
         c->op_done = 0;
         c->op_next++;
     }
+    settle_raster(c);
     if (c->current >= 0 && !c->eager)
         visit_at(c, c->current)->drained = c->last_accept;
     return moved;

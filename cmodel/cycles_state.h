@@ -23,16 +23,16 @@ typedef struct pixel_rows {
 /* What the rasterizer does next. Most runs hit, and of those no more than their pixels matters. */
 typedef struct cycle_op {
     op_kind kind;
-    pixel_rows px;    /* a run's; .count alone: rows */
+    pixel_rows px; /* a run's; .count alone: rows */
+    cycle_access access;
     bool slice_start; /* a run: the first of its slice */
-    bool killed, miss;
-    int32_t detail; /* its number among details; -1: none */
+    bool killed;
 } cycle_op;
 
 /* `count` fragments of a run from its fragment `offset` on, fragment n of them at `cycle` + n. */
 typedef struct segment {
     pixel_rows px;
-    cycle_run run; /* what is known of it beyond its pixels */
+    cycle_access access;
     bool killed;
     bool slice_start;
     int32_t offset, count;
@@ -89,8 +89,6 @@ struct cycles {
     int32_t op_done;     /* fragments of ops[op_next] accepted */
     bool new_slice;      /* the next run added begins a slice */
     int64_t slice_added; /* fragments of the slice in the ops */
-    cycle_run *details;  /* of its runs: those that missed, or all when writing through */
-    size_t detail_count, detail_room;
     visit_state visits[VISITS];
     int64_t announced, current;              /* numbers of visits; -1: none */
     bool loading;                            /* the current visit's first fragment has not been accepted */
@@ -98,6 +96,7 @@ struct cycles {
     bool glides;                             /* a blocking cache, and a FIFO longer than the way to the blender */
 
     int64_t brick_taken, slice_made, slice_taken, raster, last_accept, accepted;
+    bool glided; /* room in the FIFO has yet to delay the rasterizer */
 
     segment_ring door; /* accepted, not yet popped */
     stretch_ring pops; /* by fragment */
@@ -223,11 +222,11 @@ bool cycles_advance_data(cycles *c);
 
 /* A blocking cache's miss, looked up in `cycle`, and its way to the end; false when that depends on the bus. */
 void cycles_begin_miss(cycles *c, int64_t cycle);
-bool cycles_resolve_miss(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start);
+bool cycles_resolve_miss(cycles *c, const cycle_access *access, const pixel_rows *px, bool slice_start);
 
 /* A dirty line moves to the write buffer from cycle `earliest` on, once blends are over and the buffer is free. False
  * when it is unknown when that is. */
-bool cycles_evict(cycles *c, const cycle_run *run, int64_t earliest, int64_t *cycle);
+bool cycles_evict(cycles *c, const cycle_access *access, int64_t earliest, int64_t *cycle);
 
 /* ---- the bus: cycles_bus.c ---- */
 
@@ -243,6 +242,6 @@ void cycles_settle_loads(cycles *c);
 void cycles_finish_load(cycles *c);
 
 /* A blocking miss looked up in `cycle`, with no other fill or write under way, to its end. */
-void cycles_miss_at_once(cycles *c, const cycle_run *run, const pixel_rows *px, bool slice_start, int64_t cycle);
+void cycles_miss_at_once(cycles *c, const cycle_access *access, const pixel_rows *px, bool slice_start, int64_t cycle);
 
 #endif

@@ -2,21 +2,28 @@
 #include "fused.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "error.h"
-#include "fused_band.h"
+#include "fused_painter.h"
 
-enum { MIN_BAND_PX = 32, MAX_THREADS = 256, MAX_MARK_BYTES = 48 << 20 };
+enum { MIN_BAND_PX = 16, SPARSE_BANDS = 4, MAX_THREADS = 256, MAX_MARK_BYTES = 48 << 20 };
 
 /* What the threads share. */
 typedef struct fused {
     fused_scene scene;
     const vodr_options *options;
     int32_t threads;
+    int32_t tasks_done;   /* of the calling thread's two */
+    atomic_int waiting;   /* threads without a band */
     pthread_mutex_t lock; /* over what follows */
-    int32_t next_row_px;
+    pthread_cond_t changed;
+    int32_t next_row_px, band_px; /* rows that nobody has yet, and how many are taken at once */
+    int32_t drawing;              /* bands that are being drawn, or given away */
+    bool given;
+    fused_band gift;
     vodr_status status;
     vodr_error error;
 } fused;
@@ -63,62 +70,113 @@ static vodr_status make_marks(fused_scene *s, vodr_error *error)
 
 /* ---- threads ---- */
 
-/* The next band: large ones first, so that few bricks lie in two, small ones last, so that all threads end together. */
-static bool take_band(fused *f, int32_t *y0_px, int32_t *y1_px)
-{
-    pthread_mutex_lock(&f->lock);
-    int32_t left = f->scene.view->height_px - f->next_row_px;
-    int32_t rows = f->threads > 1 ? left * 6 / (5 * f->threads) : left;
-    rows = rows < MIN_BAND_PX ? MIN_BAND_PX : rows;
-    rows = rows < left ? rows : left;
-    *y0_px = f->next_row_px;
-    *y1_px = f->next_row_px += rows;
-    bool more = rows > 0 && f->status == VODR_OK;
-    pthread_mutex_unlock(&f->lock);
-    return more;
-}
-
 static void fail(fused *f, vodr_status status, const vodr_error *error)
 {
-    pthread_mutex_lock(&f->lock);
     if (f->status == VODR_OK) {
         f->status = status;
         f->error = *error;
     }
-    pthread_mutex_unlock(&f->lock);
 }
 
-/* Rows handed out, as a share of the frame. */
-static void report(fused *f)
+/* Told of the calling thread's own progress, in one of its two tasks; all threads go through the same bricks. */
+static void report(fused *f, double done)
 {
-    if (!f->options->progress)
+    bool second = f->tasks_done > 0;
+    if (f->options->progress)
+        f->options->progress(f->options->progress_context, second ? 0.5 + done / 2 : done / 2);
+}
+
+/* Rows that nobody has, or rows that another thread gives away; false when there will be none. Holds the lock. */
+static bool take_band(fused *f, fused_band *band)
+{
+    vodr_error error;
+    int32_t height = f->scene.view->height_px, y0 = f->next_row_px, left = height - y0;
+    if (f->status == VODR_OK && left > 0) {
+        f->next_row_px += f->band_px < left ? f->band_px : left;
+        f->drawing++;
+        vodr_status status = fused_band_start(band, &f->scene, y0, f->next_row_px, &error);
+        if (status != VODR_OK)
+            fail(f, status, &error);
+        return true;
+    }
+    atomic_fetch_add(&f->waiting, 1);
+    while (!f->given && f->drawing > 0)
+        pthread_cond_wait(&f->changed, &f->lock);
+    atomic_fetch_sub(&f->waiting, 1);
+    bool taken = f->given;
+    if (taken) {
+        *band = f->gift;
+        f->given = false;
+    }
+    return taken;
+}
+
+/* Gives half of a band to a thread that waits, if enough is left to be worth it: the bricks across the cut will be
+ * repacked by both. */
+static void share_band(fused *f, fused_band *band)
+{
+    vodr_error error;
+    int32_t rows = band->px.y1 - band->px.y0;
+    double left = rows * (1 - volume_divider_done(&band->divider));
+    if (rows < 2 * MIN_BAND_PX || left * f->threads < MIN_BAND_PX)
         return;
     pthread_mutex_lock(&f->lock);
-    double done = (double)f->next_row_px / f->scene.view->height_px;
+    if (atomic_load(&f->waiting) > 0 && !f->given) {
+        vodr_status status = fused_band_split(band, band->px.y0 + rows / 2, &f->gift, &error);
+        if (status == VODR_OK) {
+            f->given = true;
+            f->drawing++;
+        } else {
+            fused_band_finish(&f->gift);
+            fail(f, status, &error);
+        }
+        pthread_cond_broadcast(&f->changed);
+    }
     pthread_mutex_unlock(&f->lock);
-    f->options->progress(f->options->progress_context, done);
 }
 
+static void draw_band(fused *f, fused_painter *painter, fused_band *band, bool calling_thread)
+{
+    candidate c;
+    while (volume_divider_next(&band->divider, &c)) {
+        fused_painter_draw(painter, band, &c);
+        if (atomic_load_explicit(&f->waiting, memory_order_relaxed) > 0)
+            share_band(f, band);
+        if (calling_thread)
+            report(f, volume_divider_done(&band->divider));
+    }
+    fused_band_store(band);
+}
+
+/* Draws bands until there are no more. */
 static void draw_bands(fused *f, bool calling_thread)
 {
-    void *room;
+    void *room = NULL;
     vodr_error error;
-    int32_t y0_px, y1_px;
-    if (posix_memalign(&room, _Alignof(fused_band), sizeof(fused_band)) != 0) {
-        fail(f, vodr_fail(&error, VODR_NO_MEMORY, "no memory for a thread"), &error);
-        return;
-    }
-    fused_band *band = room;
-    vodr_status status = fused_band_start(band, &f->scene, &error);
-    while (status == VODR_OK && take_band(f, &y0_px, &y1_px)) {
-        status = fused_band_draw(band, y0_px, y1_px, &error);
-        if (calling_thread)
-            report(f);
-    }
+    fused_band band;
+    vodr_status status = VODR_OK;
+    if (posix_memalign(&room, _Alignof(fused_painter), sizeof(fused_painter)) != 0)
+        status = vodr_fail(&error, VODR_NO_MEMORY, "no memory for a thread");
+    fused_painter *painter = room;
+    if (status == VODR_OK)
+        status = fused_painter_start(painter, &f->scene, &error);
+    pthread_mutex_lock(&f->lock);
     if (status != VODR_OK)
         fail(f, status, &error);
-    fused_band_finish(band);
-    free(band);
+    while (take_band(f, &band)) {
+        bool good = f->status == VODR_OK;
+        pthread_mutex_unlock(&f->lock);
+        if (good)
+            draw_band(f, painter, &band, calling_thread);
+        fused_band_finish(&band);
+        pthread_mutex_lock(&f->lock);
+        f->drawing--;
+        pthread_cond_broadcast(&f->changed);
+    }
+    pthread_mutex_unlock(&f->lock);
+    if (painter)
+        fused_painter_finish(painter);
+    free(painter);
 }
 
 static void *thread_main(void *shared)
@@ -136,7 +194,7 @@ static int32_t thread_count(const vodr_options *options)
 static void count_frame(fused *f, pipeline *count)
 {
     while (pipeline_step(count))
-        report(f);
+        report(f, volume_divider_done(&count->divider));
 }
 
 /* The calling thread counts while the others draw, and then draws with them; where counting needs marks, last. */
@@ -147,17 +205,25 @@ static vodr_status run(fused *f, pipeline *count, vodr_error *error)
     bool counts_last = needs_marks(f->scene.machine);
     if (pthread_mutex_init(&f->lock, NULL) != 0)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a lock");
+    if (pthread_cond_init(&f->changed, NULL) != 0) {
+        pthread_mutex_destroy(&f->lock);
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a lock");
+    }
     while (started < f->threads - 1 && pthread_create(&threads[started], NULL, thread_main, f) == 0)
         started++;
-    if (!counts_last)
+    if (!counts_last) {
         count_frame(f, count);
+        f->tasks_done++;
+    }
     draw_bands(f, true);
     while (started > 0)
         pthread_join(threads[--started], NULL);
     if (f->status == VODR_OK && counts_last) {
+        f->tasks_done++;
         count->marks = &f->scene.marks;
         count_frame(f, count);
     }
+    pthread_cond_destroy(&f->changed);
     pthread_mutex_destroy(&f->lock);
     if (f->status != VODR_OK && error)
         *error = f->error;
@@ -222,6 +288,8 @@ vodr_status fused_render(pipeline *count, const vodr_volume *volume, const vodr_
     fused f = {.options = options, .threads = thread_count(options), .scene.frame = frame};
     fused_scene *s = &f.scene;
     make_scene(s, count, volume, options);
+    /* Bands are cut when a thread is in want of one. Without bricks there is no place to cut, and nothing to lose. */
+    f.band_px = s->sparse ? 1 + count->view->height_px / (SPARSE_BANDS * f.threads) : count->view->height_px;
     vodr_status status = make_tables(s, error);
     if (status == VODR_OK)
         status = make_marks(s, error);

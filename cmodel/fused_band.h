@@ -1,14 +1,15 @@
-/* fused_band.h - a band of the frame's rows, drawn by one thread with small bricks in visibility order (fuses
- * volume_divider, slice_generator, rasterizer, texture_unit and alpha_blender). */
+/* fused_band.h - rows of the frame while they are drawn, with their place in the order of bricks (fuses volume_divider
+ * and frame_buffer): one thread at a time draws brick after brick in visibility order, so that every pixel meets its
+ * fragments in the machine's order. Between two bricks a band can be cut in two. */
 #ifndef VODR_FUSED_BAND_H
 #define VODR_FUSED_BAND_H
 
-#include "fused_brick.h"
 #include "fused_kernels.h"
 #include "marks.h"
 #include "texture_unit.h"
 #include "view.h"
 #include "vodr.h"
+#include "volume_divider.h"
 
 /* What all threads draw from; constant while they do. */
 typedef struct fused_scene {
@@ -28,29 +29,28 @@ typedef struct fused_scene {
     vodr_frame *frame;           /* likewise */
 } fused_scene;
 
-/* Part of a batch: so many fragments on a row of the frame. */
-typedef struct band_row {
-    int32_t y, x, count;
-} band_row;
-
-/* One thread's brick, batch and band. Aligned to 64 bytes. */
 typedef struct fused_band {
     const fused_scene *scene;
-    fused_brick brick;
-    fused_batch batch;
-    int32_t count;              /* fragments in the batch, */
-    int32_t k;                  /* all of one slice */
-    band_row rows[FUSED_BATCH]; /* where they go; none is empty */
-    int32_t row_count;
-    px_rect px;       /* the band */
-    size_t stride_px; /* of its rows, with room for a group of lanes beyond */
-    void *pixels;     /* 32 or 64 bits each, as the tables */
+    px_rect px;
+    size_t stride_px;       /* of its rows, with room for a group of lanes beyond */
+    void *pixels;           /* 32 or 64 bits each, as the tables; owned */
+    volume_divider divider; /* stands at the brick drawn last */
 } fused_band;
 
-vodr_status fused_band_start(fused_band *b, const fused_scene *scene, vodr_error *error);
+/* Index of a pixel of the frame in the band's. */
+static inline size_t fused_band_at(const fused_band *b, int32_t x, int32_t y)
+{
+    return (size_t)(y - b->px.y0) * b->stride_px + (size_t)x;
+}
 
-/* Draws rows y0_px to y1_px-1 into the frame, and their marks. */
-vodr_status fused_band_draw(fused_band *b, int32_t y0_px, int32_t y1_px, vodr_error *error);
+/* Rows y0_px to y1_px-1, nothing drawn. Free with fused_band_finish() in either case. */
+vodr_status fused_band_start(fused_band *b, const fused_scene *scene, int32_t y0_px, int32_t y1_px, vodr_error *error);
+
+/* The rows from y_px on, as far as they are drawn, become a band of their own: `other` is new. */
+vodr_status fused_band_split(fused_band *b, int32_t y_px, fused_band *other, vodr_error *error);
+
+/* Writes the finished rows to the frame. */
+void fused_band_store(const fused_band *b);
 
 void fused_band_finish(fused_band *b);
 

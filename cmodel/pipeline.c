@@ -44,23 +44,32 @@ static uint32_t written_by_marks(pipeline *p, int32_t k, int32_t y, int32_t x, i
     return written;
 }
 
-/* Tells the clock of a run that was just blended; bit i of `written`: whether its fragment i wrote. */
+/* The last access as the clock sees it; bit i of `written`: whether fragment i of its run wrote. */
+static cycle_access last_access(const pixel_cache *c, int64_t line, uint32_t written)
+{
+    return (cycle_access){.line = (int32_t)line,
+                          .victim = (int32_t)c->victim,
+                          .written = written,
+                          .miss = c->missed,
+                          .reads = c->missed && c->read,
+                          .evicts = c->missed && c->evicted_dirty};
+}
+
+/* Tells the clock of fragments that were just blended. */
 static void clock_run(pipeline *p, const span *s, int32_t from, int32_t to, int64_t line, uint32_t written)
 {
-    const pixel_cache *c = &p->cache;
+    const cycle_access access = last_access(&p->cache, line, written);
     int32_t x = s->x0 + from, count = to - from;
-    if (!c->missed && !c->through)
+    if (!access.miss && !p->cache.through)
         cycles_hits(p->clock, x, s->y, count, false);
     else
-        cycles_access(p->clock, &(cycle_run){.x = x,
-                                             .y = s->y,
-                                             .count = count,
-                                             .written = written,
-                                             .miss = c->missed,
-                                             .reads = c->missed && c->read,
-                                             .evicts = c->missed && c->evicted_dirty,
-                                             .line = line,
-                                             .victim = c->victim});
+        cycles_run(p->clock, x, s->y, count, &access);
+}
+
+static void observe_miss(const pipeline *p, int32_t x, int32_t y)
+{
+    if (p->observer && p->observer->miss)
+        p->observer->miss(p->observer->context, x, y);
 }
 
 /* Blends a run; the bits of the pixels written. Which ones they are matters to a write-through cache's clock alone:
@@ -83,10 +92,9 @@ static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32
     uint32_t written;
     int64_t line = line_in_row(&p->memory.layout, p->line_row, x);
     int32_t offset = p->picture ? line_offset(&p->memory.layout, x, s->y) : 0;
-    uint64_t misses = p->cache.misses;
     vodr_rgba *pixels = pixel_cache_access(&p->cache, line, count);
-    if (p->observer && p->observer->miss && p->cache.misses != misses)
-        p->observer->miss(p->observer->context, x, s->y);
+    if (p->cache.missed)
+        observe_miss(p, x, s->y);
     if (p->picture) {
         pixels += offset;
         written = blend_pixels(p, p->fragments + from, count, pixels);
@@ -143,12 +151,52 @@ static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, in
     }
 }
 
+/* Tells the clock of pixels [x0, x1): all hit, but where the first missed. */
+static void clock_pixels(pipeline *p, int32_t y, int32_t x0, int32_t x1, const cycle_access *first)
+{
+    if (!p->clock || x0 == x1)
+        return;
+    if (first->miss)
+        cycles_run(p->clock, x0, y, x1 - x0, first);
+    else
+        cycles_hits(p->clock, x0, y, x1 - x0, false);
+}
+
+/* Where nothing but lines matters: no picture, and each fragment writes its pixel back. */
+static void count_span(pipeline *p, const span *s)
+{
+    const fb_layout layout = p->memory.layout;
+    const int64_t row = p->line_row;
+    const int32_t width_bits = layout.line_w_bits;
+    cycle_access first = {0};
+    int32_t told_to = s->x0;
+    for (int32_t x = s->x0, end; x < s->x1; x = end) {
+        int64_t line = line_in_row(&layout, row, x);
+        end = ((x >> width_bits) + 1) << width_bits;
+        end = end < s->x1 ? end : s->x1;
+        if (!pixel_cache_hit(&p->cache, line, end - x)) {
+            clock_pixels(p, s->y, told_to, x, &first);
+            pixel_cache_access(&p->cache, line, end - x);
+            observe_miss(p, x, s->y);
+            first = last_access(&p->cache, line, 0);
+            told_to = x;
+        }
+        pixel_cache_written(&p->cache);
+    }
+    clock_pixels(p, s->y, told_to, s->x1, &first);
+}
+
 static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
 {
     int32_t count = s->x1 - s->x0;
     p->counters.fragments += (uint64_t)count;
-    p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
     p->line_row = line_row(&p->memory.layout, s->y);
+    if (p->texture.whole)
+        p->counters.texture_load_bytes += texture_unit_fetched(&p->texture, count);
+    if (p->lines_only) {
+        count_span(p, s);
+        return;
+    }
     if (p->picture)
         shade_span(p, slice, s);
     for (int32_t from = 0, to; from < count; from = to) {
@@ -171,8 +219,8 @@ static void grow(px_rect *r, const span *s)
 /* Cycles of the divider since the visit before. */
 static int64_t divider_work(pipeline *p)
 {
-    int64_t work = p->candidates * p->machine->brick_setup_cycles + p->probed_rows;
-    p->candidates = p->probed_rows = 0;
+    int64_t work = volume_divider_work(&p->divider) + p->probed_rows;
+    p->probed_rows = 0;
     return work;
 }
 
@@ -216,7 +264,7 @@ static void draw_slice(pipeline *p, const candidate *c, const brick_slice *slice
 {
     rasterizer rows;
     rasterizer_start(&rows, slice, &c->bound);
-    int32_t first_row = rows.y, next_row = rows.y;
+    int32_t first_row = rows.bound.y0, next_row = first_row;
     bool visited = covered->slices > 0, any = false;
     if (visited && p->clock)
         cycles_slice(p->clock);
@@ -247,7 +295,6 @@ static void draw_candidate(pipeline *p, const candidate *c)
         slice_generator_start(p->view, &c->box, c->k0, c->k1, p->machine->blend == VODR_BLEND_UNDER);
     footprint covered = {.px = {INT32_MAX, INT32_MAX, 0, 0}};
     brick_slice slice;
-    p->candidates++;
     for (int32_t index = 0; slice_generator_next(&slices, &slice); index++)
         draw_slice(p, c, &slice, index, &covered);
     p->counters.brick_slices += covered.slices;
@@ -312,6 +359,8 @@ vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_
                            const vodr_view *view, bool picture, bool clock, vodr_error *error)
 {
     *p = (pipeline){.machine = machine, .view = view, .picture = picture};
+    p->lines_only = !picture && machine->blend == VODR_BLEND_OVER && !machine->kill_transparent &&
+                    machine->write_policy == VODR_WRITE_POLICY_BACK;
     vodr_status status = pipeline_check(machine, volume, view, error);
     if (status == VODR_OK)
         status = start_blocks(p, volume, table, error);

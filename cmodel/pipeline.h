@@ -15,6 +15,7 @@ typedef struct pipeline {
     const vodr_machine *machine;
     const vodr_view *view;
     bool picture;
+    bool lines_only; /* without a picture: all fragments write their pixels, and lines alone matter */
     volume_divider divider;
     texture_unit texture;
     alpha_blender blender;
@@ -25,13 +26,13 @@ typedef struct pipeline {
     int64_t line_row;     /* of the span at hand */
     uint8_t *seen;        /* by brick: visited before */
     vodr_counters counters;
-    const marks *marks;              /* without a picture: what a picture drawn before tells; set it as the observer */
-    cycles *clock;                   /* counts cycles; NULL: nobody does */
-    bool failed;                     /* memory ran out while it did */
-    bool flushing;                   /* what is written now is the flush at the frame's end */
-    int64_t candidates, probed_rows; /* since the last visit: the divider's work */
-    int32_t *leading_rows;           /* of a candidate's slices before its first fragment */
-    const vodr_observer *observer;   /* set it after pipeline_start(); NULL: nobody */
+    const marks *marks;            /* without a picture: what a picture drawn before tells; set it as the observer */
+    cycles *clock;                 /* counts cycles; NULL: nobody does */
+    bool failed;                   /* memory ran out while it did */
+    bool flushing;                 /* what is written now is the flush at the frame's end */
+    int64_t probed_rows;           /* since the last visit: the divider's work beside its walk */
+    int32_t *leading_rows;         /* of a candidate's slices before its first fragment */
+    const vodr_observer *observer; /* set it after pipeline_start(); NULL: nobody */
 } pipeline;
 
 /* Checks every input and prepares a frame. With `picture` false the walk leaves out densities, colours and pixels and

@@ -54,17 +54,13 @@ static vodr_rgba *pixels_of(const pixel_cache *c, const cache_line *line)
     return c->pixels + (size_t)(line - c->lines) * (size_t)c->line_pixels;
 }
 
-/* An invalid way, lowest first; else the policy's choice. */
+/* An invalid way, lowest first, which its stamp makes the oldest; else the policy's choice. */
 static cache_line *choose_victim(pixel_cache *c, cache_line *set)
 {
     cache_line *victim = set;
-    for (int32_t way = 0; way < c->ways; way++) {
-        if (set[way].number < 0)
-            return &set[way];
-        if (set[way].stamp < victim->stamp)
-            victim = &set[way];
-    }
-    if (c->replacement != VODR_REPLACEMENT_RANDOM)
+    for (int32_t way = 1; way < c->ways; way++)
+        victim = set[way].stamp < victim->stamp ? &set[way] : victim;
+    if (c->replacement != VODR_REPLACEMENT_RANDOM || victim->number < 0)
         return victim;
     c->lfsr = (c->lfsr >> 1) ^ (c->lfsr & 1 ? LFSR_TAPS : 0);
     return &set[c->lfsr & (uint32_t)(c->ways - 1)];
@@ -103,26 +99,15 @@ static void fill(pixel_cache *c, cache_line *line, int64_t number)
 
 vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count)
 {
-    c->clock++;
-    int32_t at = c->where[line];
-    c->missed = at < 0;
-    c->hits += (uint64_t)count - (at < 0);
-    if (at < 0) {
+    if (!pixel_cache_hit(c, line, count)) {
+        c->clock++;
+        c->missed = true;
         c->misses++;
-        cache_line *victim = choose_victim(c, c->lines + (size_t)set_of(c, line) * (size_t)c->ways);
-        fill(c, victim, line);
-        at = (int32_t)(victim - c->lines);
+        c->hits += (uint64_t)count - 1;
+        c->last = choose_victim(c, c->lines + (size_t)set_of(c, line) * (size_t)c->ways);
+        fill(c, c->last, line);
     }
-    cache_line *found = &c->lines[at];
-    if (c->replacement == VODR_REPLACEMENT_LRU)
-        found->stamp = c->clock;
-    c->last = found;
-    return pixels_of(c, found);
-}
-
-void pixel_cache_written(pixel_cache *c)
-{
-    c->last->dirty = !c->through;
+    return pixels_of(c, c->last);
 }
 
 void pixel_cache_flush(pixel_cache *c)

@@ -7,7 +7,7 @@
 
 typedef struct cache_line {
     int64_t number; /* of the line it holds; -1: none */
-    uint64_t stamp; /* lru: of the last access, fifo: of the fill */
+    uint64_t stamp; /* lru: of the last access, fifo: of the fill; 0: none yet */
     bool dirty;
 } cache_line;
 
@@ -45,8 +45,26 @@ vodr_status pixel_cache_start(pixel_cache *c, const vodr_machine *m, int64_t fra
  * picture. */
 vodr_rgba *pixel_cache_access(pixel_cache *c, int64_t line, int32_t count);
 
+/* The same where the cache holds the line; else false, and nothing happened. */
+static inline bool pixel_cache_hit(pixel_cache *c, int64_t line, int32_t count)
+{
+    int32_t at = c->where[line];
+    if (at < 0)
+        return false;
+    c->missed = false;
+    c->hits += (uint64_t)count;
+    c->last = &c->lines[at];
+    c->clock++;
+    if (c->replacement == VODR_REPLACEMENT_LRU)
+        c->last->stamp = c->clock;
+    return true;
+}
+
 /* The line of the last access was written. */
-void pixel_cache_written(pixel_cache *c);
+static inline void pixel_cache_written(pixel_cache *c)
+{
+    c->last->dirty = !c->through;
+}
 
 /* Writes every dirty line back, at the frame's end. */
 void pixel_cache_flush(pixel_cache *c);

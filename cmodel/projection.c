@@ -1,109 +1,237 @@
-/* projection.c - conservative bounds in floating point: rounding can only make them wider than the exact ones. */
+/* projection.c - conservative bounds in integers (docs/timing.md, section 2).
+ *
+ * With u, v, s the view's steps, a sample at q from the base has x*u + y*v + k*s = q in parallel views, and in
+ * perspective x*z*u + y*z*v + z*s = q*2^shift before its one floor, which takes no sample across the border of a voxel.
+ * So x, y, k, or x*z, y*z, z, are affine in the position, with factors cross(v, s)/det and so on. Numerators and det
+ * are exact here, in 128 bits; only rounding them down into registers loses anything, less than one unit each.
+ * Positions in a volume of W x H x D voxels are not negative: a sum of registers is too small by less than W + H + D +
+ * 1 units, and never too large.
+ */
 #include "projection.h"
 
-#include <float.h>
-#include <math.h>
+__extension__ typedef __int128 wide;
 
-static void cross(const double a[3], const double b[3], double out[3])
+enum {
+    STEP_BITS = 41,   /* of a step's magnitude: larger ones are not inverted */
+    FACTOR_BITS = 31, /* of m's magnitude */
+    OFFSET_BITS = 50, /* of lo's and hi's, before margins */
+    FRACTION_BITS = 24,
+    DEPTH_BITS = 62,         /* of depths on their way to slices, */
+    DEPTH_FRACTION_BITS = 60 /* of these */
+};
+
+/* An affine function before it is rounded: (n[0]*x + n[1]*y + n[2]*z + n[3])/d at a position in voxels; d > 0. */
+typedef struct affine {
+    wide n[4], d;
+} affine;
+
+static bool below(wide value, int bits)
 {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
+    return value < (wide)1 << bits && value > -((wide)1 << bits);
 }
 
-static double dot(const double a[3], const double b[3])
+static wide floor_div(wide a, wide b)
 {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return a / b - (a % b < 0);
 }
 
-static double norm1(const double a[3])
+/* Rounds a function down to registers with as many fraction bits, at most `most`, as leave the factors below 2^factor
+ * and the constant below 2^offset; false when not even none do. */
+static bool round_down(const affine *a, int factor, int offset, int most, wide q[4], int *fraction)
 {
-    return fabs(a[0]) + fabs(a[1]) + fabs(a[2]);
-}
-
-projection projection_of(const vodr_view *view)
-{
-    projection p = {.view = view};
-    double unit = ldexp(1.0, -VODR_POSITION_BITS), u[3], v[3], s[3];
-    for (int c = 0; c < 3; c++) {
-        u[c] = ldexp((double)view->step_u[c], -view->shift) * unit;
-        v[c] = ldexp((double)view->step_v[c], -view->shift) * unit;
-        s[c] = ldexp((double)view->step_s[c], -view->shift) * unit;
-        p.base[c] = (double)view->base[c] * unit;
+    wide rest[4];
+    bool fits = true, doubles = true;
+    for (int i = 0; i < 4; i++) {
+        q[i] = floor_div(a->n[i], a->d);
+        rest[i] = a->n[i] - q[i] * a->d;
+        fits &= below(q[i], i < 3 ? factor : offset);
     }
-    cross(v, s, p.to_x);
-    cross(s, u, p.to_y);
-    cross(u, v, p.to_depth);
-    double det = dot(u, p.to_x);
-    p.usable = fabs(det) > 1e-6 * norm1(u) * norm1(v) * norm1(s) && fabs(det) > DBL_MIN;
-    if (!p.usable)
+    for (*fraction = 0; fits && *fraction < most; *fraction += doubles) {
+        for (int i = 0; i < 4; i++)
+            doubles &= below(q[i], (i < 3 ? factor : offset) - 1);
+        if (!doubles)
+            break;
+        for (int i = 0; i < 4; i++) {
+            bool carry = rest[i] >= a->d - rest[i];
+            rest[i] = carry ? rest[i] - (a->d - rest[i]) : 2 * rest[i];
+            q[i] = 2 * q[i] + carry;
+        }
+    }
+    return fits;
+}
+
+static bound_row row_of(const wide q[4], int fraction, wide below_lo, wide above_hi)
+{
+    return (bound_row){.m = {(int32_t)q[0], (int32_t)q[1], (int32_t)q[2]},
+                       .lo = (int64_t)(q[3] - below_lo),
+                       .hi = (int64_t)(q[3] + above_hi),
+                       .fraction = fraction};
+}
+
+/* A row whose first and last integers are asked for: `slack` is by how much, in 1/d, the function can be less. */
+static bound_row integer_row(const affine *a, wide slack, int32_t extent, const bound_row *all)
+{
+    wide q[4];
+    int fraction;
+    if (!round_down(a, FACTOR_BITS, OFFSET_BITS, FRACTION_BITS, q, &fraction))
+        return *all;
+    wide one = (wide)1 << fraction, less = slack ? floor_div(slack << fraction, a->d) + 1 : 0;
+    return row_of(q, fraction, less - (one - 1), extent + one);
+}
+
+static bound_row all_slices(const vodr_view *v)
+{
+    return (bound_row){.lo = 0, .hi = v->slices};
+}
+
+/* Slices from depths. Slice k has depth z when z <= (depth_first + k*depth_step)/2^16 < z + 1. */
+static bound_row slice_row(const vodr_view *v, const affine *depth, int32_t extent)
+{
+    const bound_row all = all_slices(v);
+    wide q[4];
+    int fraction;
+    if (v->depth_step == 0 || !round_down(depth, DEPTH_BITS, DEPTH_BITS, DEPTH_FRACTION_BITS + v->shift, q, &fraction))
+        return all;
+    fraction -= v->shift;
+    if (fraction < VODR_DEPTH_BITS)
+        return all;
+    affine slice = {.d = (wide)-v->depth_step << (fraction - VODR_DEPTH_BITS)};
+    for (int c = 0; c < 3; c++)
+        slice.n[c] = -q[c];
+    slice.n[3] = ((wide)v->depth_first << (fraction - VODR_DEPTH_BITS)) - q[3];
+    return integer_row(&slice, ((wide)1 << fraction) + extent, extent, &all);
+}
+
+static void cross(const int64_t a[3], const int64_t b[3], wide out[3])
+{
+    for (int c = 0; c < 3; c++) {
+        int i = (c + 1) % 3, j = (c + 2) % 3;
+        out[c] = (wide)a[i] * b[j] - (wide)a[j] * b[i];
+    }
+}
+
+/* cross(a, b) . (position - base) / det, in units of 2^-24 of what it is. */
+static affine inverse_row(const vodr_view *view, const int64_t a[3], const int64_t b[3], wide det)
+{
+    affine row = {.d = det < 0 ? -det : det};
+    wide by[3];
+    cross(a, b, by);
+    for (int c = 0; c < 3; c++) {
+        by[c] = det < 0 ? -by[c] : by[c];
+        row.n[c] = by[c] * ((wide)1 << VODR_POSITION_BITS);
+        row.n[3] -= by[c] * view->base[c];
+    }
+    return row;
+}
+
+/* The three numerators of perspective: of their common scale only ratios remain. */
+static void ratio_rows(projection *p, affine rows[3], int32_t extent)
+{
+    bound_row *const out[3] = {&p->x, &p->y, &p->z};
+    wide q[4];
+    int shift = 0;
+    for (int r = 0; r < 3; r++)
+        for (int i = 0; i < 4; i++)
+            while (!below(rows[r].n[i] >> shift, i < 3 ? FACTOR_BITS : OFFSET_BITS))
+                shift++;
+    for (int r = 0; r < 3; r++) {
+        for (int i = 0; i < 4; i++)
+            q[i] = rows[r].n[i] >> shift;
+        *out[r] = row_of(q, 0, 0, extent);
+    }
+}
+
+projection projection_of(const vodr_view *view, const int32_t dims_vox[3])
+{
+    const bound_row everywhere = {.lo = -VODR_MAX_SIZE_PX, .hi = VODR_MAX_SIZE_PX};
+    projection p = {.perspective = view->perspective, .slices = view->slices, .x = everywhere, .y = everywhere};
+    p.z = (bound_row){.lo = 1, .hi = 1};
+    p.k = all_slices(view);
+    int32_t extent = dims_vox[0] + dims_vox[1] + dims_vox[2] + 1;
+    const int64_t *u = view->step_u, *v = view->step_v;
+    int64_t s[3];
+    bool small = true;
+    wide det = 0, across[3];
+    p.centre_px[0] = view->perspective ? view->width_px / 2 : 0;
+    p.centre_px[1] = view->perspective ? view->height_px / 2 : 0;
+    for (int c = 0; c < 3 && small; c++) {
+        small = below(u[c], STEP_BITS) && below(v[c], STEP_BITS) && below(view->step_s[c], STEP_BITS);
+        s[c] = small ? view->step_s[c] + p.centre_px[0] * u[c] + p.centre_px[1] * v[c] : 0;
+        small &= below(s[c], STEP_BITS);
+    }
+    if (!small)
         return p;
-    for (int c = 0; c < 3; c++) {
-        p.to_x[c] /= det;
-        p.to_y[c] /= det;
-        p.to_depth[c] /= det;
+    cross(v, s, across);
+    for (int c = 0; c < 3; c++)
+        det += u[c] * across[c];
+    if (det == 0)
+        return p;
+    affine rows[3] = {inverse_row(view, v, s, det), inverse_row(view, s, u, det), inverse_row(view, u, v, det)};
+    if (view->perspective) {
+        ratio_rows(&p, rows, extent);
+        p.k = slice_row(view, &rows[2], extent);
+    } else {
+        p.x = integer_row(&rows[0], 0, extent, &everywhere);
+        p.y = integer_row(&rows[1], 0, extent, &everywhere);
+        p.k = integer_row(&rows[2], 0, extent, &p.k);
     }
-    p.margin_k = 1 + norm1(p.to_depth) * 4 * unit;
-    p.margin_eye = 0.5 + 0.01 * norm1(p.to_depth);
-    p.margin_px = 1 + (norm1(p.to_x) + norm1(p.to_y)) * 4 * unit / (view->perspective ? p.margin_eye : 1);
     return p;
 }
 
-/* Slices of a perspective view whose depth can lie in [near, far]. */
-static void depth_to_slices(const vodr_view *v, double near, double far, double *k0, double *k1)
+/* ---- a box ---- */
+
+static inline int64_t least(const bound_row *r, const vox_box *b)
 {
-    double first = ldexp((double)v->depth_first, -VODR_DEPTH_BITS),
-           step = ldexp((double)v->depth_step, -VODR_DEPTH_BITS);
-    *k0 = 0;
-    *k1 = v->slices;
-    if (step < 0) {
-        *k0 = (first - far - 1) / -step;
-        *k1 = (first - near + 1) / -step;
-    }
+    int64_t sum = r->lo;
+    for (int c = 0; c < 3; c++)
+        sum += (int64_t)r->m[c] * (r->m[c] < 0 ? b->hi[c] : b->lo[c]);
+    return sum;
 }
 
-static int32_t clamp_floor(double value, int32_t lo, int32_t hi)
+static inline int64_t greatest(const bound_row *r, const vox_box *b)
 {
-    return value <= lo ? lo : value >= hi ? hi : (int32_t)floor(value);
+    int64_t sum = r->hi;
+    for (int c = 0; c < 3; c++)
+        sum += (int64_t)r->m[c] * (r->m[c] < 0 ? b->lo[c] : b->hi[c]);
+    return sum;
+}
+
+static inline int32_t cut(int64_t value, int32_t lo, int32_t hi)
+{
+    return value <= lo ? lo : value >= hi ? hi : (int32_t)value;
+}
+
+static inline bool bound_integers(const bound_row *r, const vox_box *box, int32_t from, int32_t to, int32_t *first,
+                                  int32_t *end)
+{
+    *first = cut(least(r, box) >> r->fraction, from, to);
+    *end = cut(greatest(r, box) >> r->fraction, from, to);
+    return *first < *end;
+}
+
+/* Pixels whose distance from `centre` is a numerator over a depth in [near, far], near > 0. Quotients are cut off
+ * towards zero. */
+static inline bool bound_ratio(const bound_row *r, const vox_box *box, int64_t near, int64_t far, int32_t centre,
+                               int32_t from, int32_t to, int32_t *first, int32_t *end)
+{
+    int64_t lo = least(r, box), hi = greatest(r, box);
+    *first = cut(centre + (lo > 0 ? (lo - 1) / far + 1 : lo / near), from, to);
+    *end = cut(centre + (hi < 0 ? (hi + 1) / far : hi / near + 1), from, to);
+    return *first < *end;
 }
 
 bool projection_bound(const projection *p, const vox_box *box, const px_rect *clip, px_rect *bound, int32_t *k0,
                       int32_t *k1)
 {
-    const vodr_view *view = p->view;
+    if (!bound_integers(&p->k, box, 0, p->slices, k0, k1))
+        return false;
+    if (!p->perspective)
+        return bound_integers(&p->x, box, clip->x0, clip->x1, &bound->x0, &bound->x1) &&
+               bound_integers(&p->y, box, clip->y0, clip->y1, &bound->y0, &bound->y1);
+    int64_t near = least(&p->z, box), far = greatest(&p->z, box);
     *bound = *clip;
-    *k0 = 0;
-    *k1 = view->slices;
-    if (!p->usable)
-        return true;
-    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
-    bool reaches_eye = false;
-    for (int corner = 0; corner < 8; corner++) {
-        double q[3];
-        for (int c = 0; c < 3; c++)
-            q[c] = (corner >> c & 1 ? box->hi[c] : box->lo[c]) - p->base[c];
-        double at[3] = {dot(p->to_x, q), dot(p->to_y, q), dot(p->to_depth, q)};
-        if (view->perspective) {
-            reaches_eye |= at[2] < p->margin_eye;
-            at[0] /= at[2];
-            at[1] /= at[2];
-        }
-        for (int i = 0; i < 3; i++) {
-            lo[i] = fmin(lo[i], at[i]);
-            hi[i] = fmax(hi[i], at[i]);
-        }
-    }
-    double from = lo[2], to = hi[2];
-    if (view->perspective)
-        depth_to_slices(view, lo[2] - 1, hi[2] + 1, &from, &to);
-    *k0 = clamp_floor(from - p->margin_k, 0, view->slices);
-    *k1 = clamp_floor(to + p->margin_k + 1, 0, view->slices);
-    if (!reaches_eye) {
-        double m = p->margin_px;
-        bound->x0 = clamp_floor(lo[0] - m, clip->x0, clip->x1);
-        bound->x1 = clamp_floor(hi[0] + m + 1, clip->x0, clip->x1);
-        bound->y0 = clamp_floor(lo[1] - m, clip->y0, clip->y1);
-        bound->y1 = clamp_floor(hi[1] + m + 1, clip->y0, clip->y1);
-    }
-    return bound->x0 < bound->x1 && bound->y0 < bound->y1 && *k0 < *k1;
+    if (near <= 0) /* the box reaches the eye's plane, or lies behind it */
+        return far > 0;
+    return bound_ratio(&p->x, box, near, far, p->centre_px[0], clip->x0, clip->x1, &bound->x0, &bound->x1) &&
+           bound_ratio(&p->y, box, near, far, p->centre_px[1], clip->y0, clip->y1, &bound->y0, &bound->y1);
 }

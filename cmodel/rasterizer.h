@@ -4,25 +4,30 @@
 
 #include "view.h"
 
-/* The brick's borders as bounds on x. On row y a bound is floor(n/divisor) + 1 with n affine in y; kept as quotient and
- * remainder, so that a row further down costs two additions. Bounds from the left come first, as many from the right
- * follow: one of each for an axis along which x moves. */
-typedef struct raster_edges {
-    int32_t count;
-    int64_t quotient[6], remainder[6], divisor[6];
-    int64_t quotient_step[6], remainder_step[6];
-} raster_edges;
+enum { RASTER_ROWS = 32 }; /* found at once */
+
+/* A border of the brick as a bound on x: floor(n/divisor) + 1 with n growing by `step` a row. */
+typedef struct raster_edge {
+    int64_t n, step, divisor;
+} raster_edge;
+
+/* The same in doubles: the floor of at + i*step on row i. */
+typedef struct raster_line {
+    double at, step;
+} raster_line;
 
 typedef struct rasterizer {
-    const brick_slice *slice;
-    px_rect bound;
-    int32_t y;
-    bool any;       /* a row had fragments */
-    int64_t row[3]; /* the plane's numerators at (0, y) */
-    raster_edges edges;
+    px_rect bound;                 /* no fragment lies outside */
+    int32_t y, end_y;              /* the next row, and behind the last, to look at */
+    bool any, rounds;              /* a row had fragments; doubles are wide enough */
+    int32_t axes;                  /* along which x moves; each has an edge on the left and one on the right */
+    raster_edge left[3], right[3]; /* on row bound.y0 */
+    raster_line left_line[3], right_line[3]; /* likewise; beyond `axes` the bound */
+    int32_t filled_y0, filled_y1;            /* rows whose runs are known: */
+    int32_t x0[RASTER_ROWS], x1[RASTER_ROWS];
 } rasterizer;
 
-/* The slice's fragments within `bound`. The slice must outlive the walk. */
+/* The slice's fragments within `bound`. */
 void rasterizer_start(rasterizer *r, const brick_slice *slice, const px_rect *bound);
 
 /* The next row that has fragments; false after the last. */

@@ -173,7 +173,9 @@ static inline int32_t filter_linear(const texture_unit *t, bool whole, const int
 static inline void filter_span(const texture_unit *t, bool whole, bool linear, const brick_slice *slice, const span *s,
                                uint16_t *densities)
 {
-    int64_t a[3] = {s->a[0], s->a[1], s->a[2]};
+    int64_t a[3];
+    for (int c = 0; c < 3; c++)
+        a[c] = numerator_at(&slice->plane, c, s->x0, s->y);
     int32_t shift = t->view->shift;
     for (int32_t n = 0; n < s->x1 - s->x0; n++) {
         int64_t position[3];

@@ -31,10 +31,9 @@ typedef struct brick_slice {
     int64_t lo[3], hi[3];
 } brick_slice;
 
-/* Pixels [x0, x1) of row y, all inside the brick; a[] is the plane's numerator at (x0, y). */
+/* Pixels [x0, x1) of row y, all inside the brick. */
 typedef struct span {
     int32_t y, x0, x1;
-    int64_t a[3];
 } span;
 
 /* Depth of slice k of a perspective view. */
@@ -53,6 +52,12 @@ static inline slice_plane slice_plane_of(const vodr_view *v, int32_t k)
         p.step_v[c] = z * v->step_v[c];
     }
     return p;
+}
+
+/* A, component c, at pixel (x, y). */
+static inline int64_t numerator_at(const slice_plane *p, int c, int32_t x, int32_t y)
+{
+    return p->origin[c] + x * p->step_u[c] + y * p->step_v[c];
 }
 
 /* The A at which a position reaches voxel border `vox`: position >= vox exactly when A >= border_of(). */

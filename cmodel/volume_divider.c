@@ -8,6 +8,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "error.h"
 #include "layout.h"
@@ -139,7 +140,10 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
                                  const vodr_view *view, const int32_t edge_vox[3], const px_rect *window,
                                  const int32_t *transparent_to, vodr_error *error)
 {
-    *d = (volume_divider){.view = view, .projection = projection_of(view), .window = *window};
+    *d = (volume_divider){.view = view,
+                          .projection = projection_of(view, volume->dims_vox),
+                          .window = *window,
+                          .setup_cycles = m->brick_setup_cycles};
     size_t total = 1;
     for (int c = 0; c < 3; c++) {
         d->dims_vox[c] = volume->dims_vox[c];
@@ -212,17 +216,22 @@ static vox_box level_box(const volume_divider *d, int level, int32_t first[3])
 
 /* Fills in the candidate where the loops stand and returns 3, or the level of the outermost loop that only just began
  * and whose bricks, a slab, a row or one, cannot show. */
-static int propose(const volume_divider *d, candidate *c)
+static int propose(volume_divider *d, candidate *c)
 {
     int level = d->at[2] ? 2 : d->at[1] ? 1 : 0;
     int32_t index[3];
     for (; level < 3; level++) {
         c->box = level_box(d, level, index);
+        c->brick = brick_number(d, index);
+        if (level == 2 && d->empty && d->empty[c->brick]) {
+            d->work_cycles++;
+            return level;
+        }
+        d->work_cycles += d->setup_cycles;
         if (!projection_bound(&d->projection, &c->box, &d->tile, &c->bound, &c->k0, &c->k1))
             return level;
     }
-    c->brick = brick_number(d, index);
-    return d->empty && d->empty[c->brick] ? 2 : 3;
+    return level;
 }
 
 bool volume_divider_next(volume_divider *d, candidate *c)
@@ -238,6 +247,38 @@ bool volume_divider_next(volume_divider *d, candidate *c)
         d->left = advance(d, level) || next_tile(d);
     }
     return false;
+}
+
+static void *copy_of(const void *items, size_t bytes)
+{
+    void *copy = items ? malloc(bytes) : NULL;
+    if (copy)
+        memcpy(copy, items, bytes);
+    return copy;
+}
+
+vodr_status volume_divider_split(volume_divider *d, int32_t y_px, volume_divider *other, vodr_error *error)
+{
+    size_t total = 1;
+    bool good = true;
+    *other = *d;
+    for (int c = 0; c < 3; c++) {
+        other->order[c] = copy_of(d->order[c], (size_t)d->bricks[c] * sizeof *d->order[c]);
+        good &= other->order[c] != NULL;
+        total *= (size_t)d->bricks[c];
+    }
+    other->empty = copy_of(d->empty, total);
+    if (!good || (d->empty && !other->empty))
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for the order of %zu bricks", total);
+    other->window.y0 = other->tile.y0 = d->window.y1 = d->tile.y1 = y_px;
+    return VODR_OK;
+}
+
+int64_t volume_divider_work(volume_divider *d)
+{
+    int64_t work = d->work_cycles;
+    d->work_cycles = 0;
+    return work;
 }
 
 double volume_divider_done(const volume_divider *d)

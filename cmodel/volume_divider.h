@@ -32,6 +32,8 @@ typedef struct volume_divider {
     px_rect window;     /* the part of the frame that is drawn */
     int32_t at[3];      /* loop counters, outermost first */
     bool started, left; /* left: the loops stand at a brick */
+    int32_t setup_cycles;
+    int64_t work_cycles; /* of bounding boxes and looking up empty bricks, not yet told */
 } volume_divider;
 
 /* The brick's edge that a machine uses for a view, in voxels (the paper's section 3.1):
@@ -50,6 +52,14 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
 
 /* The next candidate in visibility order; false after the last, and from then on. */
 bool volume_divider_next(volume_divider *d, candidate *c);
+
+/* Cuts the window in two while it is walked over, in an order without tiles: `other`, which is new, goes on from the
+ * same brick over the rows from y_px on, and `d` over those above. Free `other` in either case. */
+vodr_status volume_divider_split(volume_divider *d, int32_t y_px, volume_divider *other, vodr_error *error);
+
+/* Cycles that the walk took since the last call: brick_setup_cycles for each slab, row or brick bounded, one for each
+ * brick that skip_empty left out. */
+int64_t volume_divider_work(volume_divider *d);
 
 /* How far the walk is, 0 to 1. */
 double volume_divider_done(const volume_divider *d);

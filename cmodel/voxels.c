@@ -20,8 +20,11 @@ void voxels_row(const vodr_volume *volume, int32_t density_bits, size_t first, i
         return;
     }
     const uint8_t *voxel = (const uint8_t *)volume->voxels + first;
-    for (int32_t i = 0; i < count; i++)
-        densities[i] = volume->map ? volume->map[voxel[i]] : voxel[i];
+    const uint16_t *restrict map = volume->map;
+    for (int32_t i = 0; i < count && map; i++)
+        densities[i] = map[voxel[i]];
+    for (int32_t i = 0; i < count && !map; i++)
+        densities[i] = voxel[i];
 }
 
 void voxels_range(const vodr_volume *volume, int32_t density_bits, const vox_box *box, int32_t *min, int32_t *max)

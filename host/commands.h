@@ -5,6 +5,6 @@
 #include "host.h"
 #include "options.h"
 
-extern const command command_render, command_compare, command_info, command_machine, command_report;
+extern const command command_render, command_compare, command_info, command_machine, command_report, command_sweep;
 
 #endif

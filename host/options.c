@@ -94,7 +94,7 @@ static void print_help(const command *c)
     printf("vodr %s - %s\n\nusage: vodr %s", c->name, c->summary, c->name);
     for (int i = 0; c->operands[i]; i++)
         printf(i < c->required ? " %s" : " [%s]", c->operands[i]);
-    puts(" [OPTION]...");
+    puts(c->more ? "... [OPTION]..." : " [OPTION]...");
     for (const option_table *const *table = c->tables; *table; table++) {
         printf("\n%s\n", (*table)->title);
         for (size_t i = 0; i < (*table)->count; i++)
@@ -107,7 +107,7 @@ static void print_help(const command *c)
 static host_status parse_operand(parser *p, int *count, const char **operands, host_error *error)
 {
     const char *argument = p->argv[p->next++];
-    if (*count == OPTION_OPERANDS || !p->command->operands[*count])
+    if (!p->command->more && (*count == OPTION_OPERANDS || !p->command->operands[*count]))
         return host_fail(error, HOST_BAD_INPUT, "%s does not take a further operand '%s' (see `vodr %s --help`)",
                          p->command->name, argument, p->command->name);
     operands[(*count)++] = argument;
@@ -153,4 +153,58 @@ host_status options_parse(const command *c, int argc, char **argv, void *const *
     if (*help)
         print_help(c);
     return status;
+}
+
+/* ---- a command line as text ---- */
+
+static void put_quoted(FILE *file, const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    if (*word && word[strspn(word, plain)] == '\0') {
+        fputs(word, file);
+        return;
+    }
+    putc('\'', file);
+    for (; *word; word++)
+        *word == '\'' ? fputs("'\\''", file) : putc(*word, file);
+    putc('\'', file);
+}
+
+static bool is_among(const char *name, const char *const *names)
+{
+    for (; names && *names; names++)
+        if (strcmp(name, *names) == 0)
+            return true;
+    return false;
+}
+
+/* How many words from argv[i] on make one option or operand; *left_out: it is one of `without`. */
+static int words_at(const command *c, const char *argument, bool options, const char *const *without, bool *left_out)
+{
+    match m;
+    *left_out = false;
+    if (!options || argument[0] != '-' || !argument[1] || !find_option(c, argument, &m))
+        return 1;
+    *left_out = is_among(m.option->name, without);
+    return m.option->value && !m.attached ? 2 : 1;
+}
+
+host_status options_quote(const command *c, int argc, char **argv, const char *const *without, char **quoted,
+                          host_error *error)
+{
+    size_t size;
+    FILE *file = open_memstream(quoted, &size);
+    if (!file)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for the command line");
+    fprintf(file, "vodr %s", c->name);
+    bool options = true, left_out;
+    for (int i = 1, words; i < argc; i += words) {
+        words = words_at(c, argv[i], options, without, &left_out);
+        options = options && strcmp(argv[i], "--") != 0;
+        for (int j = i; j < i + words && j < argc && !left_out; j++) {
+            putc(' ', file);
+            put_quoted(file, argv[j]);
+        }
+    }
+    return fclose(file) == 0 ? HOST_OK : host_fail(error, HOST_ENVIRONMENT, "no memory for the command line");
 }

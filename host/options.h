@@ -28,6 +28,7 @@ typedef struct command {
     const char *name;
     const char *operands[OPTION_OPERANDS + 1];     /* their names, NULL after the last */
     int required;                                  /* how many of them must be there */
+    bool more;                                     /* the last one may be there any number of times */
     const char *summary;                           /* one line */
     const char *example;                           /* whole command lines */
     const option_table *tables[OPTION_TABLES + 1]; /* NULL after the last */
@@ -35,12 +36,17 @@ typedef struct command {
     host_status (*run)(int argc, char **argv, host_error *error);
 } command;
 
-/* Reads a command line into targets[i] by tables[i], and its operands (NULL where not given). An option's value follows
- * `=` or a space and may begin with `-`; `--` ends the options. Sets *help, having printed the help on standard output,
- * when
- * --help or -h stands where an option may. */
+/* Reads a command line into targets[i] by tables[i], and its operands (NULL where not given): OPTION_OPERANDS of them,
+ * with `more` room for argc and for OPTION_OPERANDS. An option's value follows `=` or a space and may begin with `-`;
+ * `--` ends the options. Sets *help, having printed the help on standard output, when --help or -h stands where an
+ * option may. */
 host_status options_parse(const command *c, int argc, char **argv, void *const *targets, const char **operands,
                           bool *help, host_error *error);
+
+/* The command line as a shell takes it, words quoted where need be, after options_parse() took it. It leaves out the
+ * options named in `without` (NULL after the last; NULL: none), values and all. free() it. */
+host_status options_quote(const command *c, int argc, char **argv, const char *const *without, char **quoted,
+                          host_error *error);
 
 /* Fails with "--size '0x3': must be <form>". */
 host_status option_refuse(const option *o, const char *value, const char *form, host_error *error);

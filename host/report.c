@@ -27,37 +27,6 @@ static const option rows[] = {
 };
 static const option_table table = {"Output:", rows, sizeof rows / sizeof *rows};
 
-/* ---- the command that repeats the run ---- */
-
-static void put_quoted(FILE *file, const char *word)
-{
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
-    if (*word && word[strspn(word, plain)] == '\0') {
-        fputs(word, file);
-        return;
-    }
-    putc('\'', file);
-    for (; *word; word++)
-        *word == '\'' ? fputs("'\\''", file) : putc(*word, file);
-    putc('\'', file);
-}
-
-static host_status quote_command(int argc, char **argv, char **quoted, host_error *error)
-{
-    size_t size;
-    FILE *file = open_memstream(quoted, &size);
-    if (file) {
-        fputs("vodr", file);
-        for (int i = 0; i < argc; i++) {
-            putc(' ', file);
-            put_quoted(file, argv[i]);
-        }
-    }
-    if (!file || fclose(file) != 0)
-        return host_fail(error, HOST_ENVIRONMENT, "no memory for the command line");
-    return HOST_OK;
-}
-
 /* ---- drawing ---- */
 
 /* The named machine's organisation with the picture parameters of `picture`, so that it draws the same frame. */
@@ -171,7 +140,7 @@ static host_status run(int argc, char **argv, host_error *error)
     bool help;
     host_status status = options_parse(&command_report, argc, argv, targets, operands, &help, error);
     if (status == HOST_OK && !help)
-        status = quote_command(argc, argv, &options.command, error);
+        status = options_quote(&command_report, argc, argv, NULL, &options.command, error);
     if (status == HOST_OK && !help)
         status = make_report(operands[0], &options, error);
     free(options.command);

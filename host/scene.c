@@ -3,37 +3,31 @@
 
 #include <stdlib.h>
 
-static void choose_window(scene *s, const view_options *o, bool ct)
+void scene_window(const view_options *o, const transfer *t, bool ct, double min, double max, double *lo, double *hi)
 {
-    s->window_lo = s->volume.min;
-    s->window_hi = s->volume.max;
-    if (ct && s->transfer.has_ct_window) {
-        s->window_lo = s->transfer.ct_lo;
-        s->window_hi = s->transfer.ct_hi;
-    }
-    if (o->has_window) {
-        s->window_lo = o->window_lo;
-        s->window_hi = o->window_hi;
-    }
+    const bool own = ct && t->has_ct_window;
+    *lo = o->has_window ? o->window_lo : own ? t->ct_lo : min;
+    *hi = o->has_window ? o->window_hi : own ? t->ct_hi : max;
 }
 
-static host_status fill_table(scene *s, host_error *error)
+host_status scene_table(const vodr_machine *m, const transfer *t, double lo, double hi, double depth_vox,
+                        vodr_rgba **entries, vodr_table *made, host_error *error)
 {
-    const vodr_machine *m = &s->machine;
-    bool mip = m->blend == VODR_BLEND_MIP;
-    s->table.count = (size_t)1 << m->density_bits;
-    s->entries = malloc(s->table.count * sizeof *s->entries);
-    if (!s->entries)
+    const bool mip = m->blend == VODR_BLEND_MIP;
+    const size_t count = (size_t)1 << m->density_bits;
+    *entries = malloc(count * sizeof **entries);
+    if (!*entries)
         return host_fail(error, HOST_ENVIRONMENT, "no memory for the transfer-function table");
-    s->table.entries = s->entries;
-    transfer_table(&s->transfer, s->window_lo, s->window_hi, m->density_bits, m->tf_bits, mip ? 1 : s->depth_vox, mip,
-                   s->entries);
+    *made = (vodr_table){*entries, count};
+    transfer_table(t, lo, hi, m->density_bits, m->tf_bits, mip ? 1 : depth_vox, mip, *entries);
     return HOST_OK;
 }
 
 static host_status fill(scene *s, const char *path, const view_options *o, host_error *error)
 {
     host_status status = view_options_machine(o, &s->machine, error);
+    if (status == HOST_OK)
+        status = energy_open(o->energy, &s->energy, error);
     if (status == HOST_OK)
         status = volume_open(path, &o->volume, &s->volume, error);
     if (status != HOST_OK)
@@ -42,11 +36,14 @@ static host_status fill(scene *s, const char *path, const view_options *o, host_
     status = transfer_open(o->transfer, ct, &s->transfer, error);
     if (status != HOST_OK)
         return status;
-    choose_window(s, o, ct);
+    scene_window(o, &s->transfer, ct, s->volume.min, s->volume.max, &s->window_lo, &s->window_hi);
     status = camera_view(&s->camera, &s->volume, &s->view, &s->depth_vox, error);
     if (status == HOST_OK)
         status = volume_quantise(&s->volume, s->window_lo, s->window_hi, s->machine.density_bits, &s->densities, error);
-    return status == HOST_OK ? fill_table(s, error) : status;
+    if (status != HOST_OK)
+        return status;
+    return scene_table(&s->machine, &s->transfer, s->window_lo, s->window_hi, s->depth_vox, &s->entries, &s->table,
+                       error);
 }
 
 host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error)

@@ -2,6 +2,7 @@
 #ifndef HOST_SCENE_H
 #define HOST_SCENE_H
 
+#include "energy.h"
 #include "host.h"
 #include "transfer.h"
 #include "view_options.h"
@@ -21,10 +22,18 @@ typedef struct scene {
     double depth_vox; /* distance between slices in finest voxels */
     vodr_table table;
     vodr_rgba *entries; /* of table, owned */
+    energy_table energy;
 } scene;
 
 /* Opens the volume and computes all of *s, to be closed on success. */
 host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error);
 void scene_close(scene *s);
+
+/* The window: as given, else the transfer function's own for a CT in Hounsfield units, else the data's range. */
+void scene_window(const view_options *o, const transfer *t, bool ct, double min, double max, double *lo, double *hi);
+
+/* The machine's table for slices so far apart; free() the entries. */
+host_status scene_table(const vodr_machine *m, const transfer *t, double lo, double hi, double depth_vox,
+                        vodr_rgba **entries, vodr_table *made, host_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* stats.c - the statistics of a frame as JSON (--stats). */
 #include "stats.h"
 
+#include "costs.h"
 #include "cycle_stats.h"
 #include "json.h"
 
@@ -76,11 +77,12 @@ json_t *stats_json(const scene *s, const view_options *options, const result *r)
     char bottleneck[192];
     if (cycles)
         cycle_stats_bottleneck(cycles, bottleneck, sizeof bottleneck);
+    const costs c = costs_of(&s->machine, &s->view, &r->counters, &s->energy);
     json_t *rest = json_pack(
-        "{s:i, s:o, s:o, s:s?, s:s, s:i, s:i, s:f, s:f}", "slices", (int)s->view.slices, "cycles",
+        "{s:i, s:o, s:o, s:s?, s:o, s:s, s:i, s:i, s:f, s:f}", "slices", (int)s->view.slices, "cycles",
         cycles ? cycle_stats_blocks(cycles) : json_null(), "stalls", cycles ? cycle_stats_stalls(cycles) : json_null(),
-        "bottleneck", cycles ? bottleneck : NULL, "frame_sha256", r->frame_sha256, "threads", (int)options->threads,
-        "repeat", r->repeat, "wall_s", r->wall_s, "fragments_per_s", stats_fragments_per_s(r));
+        "bottleneck", cycles ? bottleneck : NULL, "costs", costs_json(&c), "frame_sha256", r->frame_sha256, "threads",
+        (int)options->threads, "repeat", r->repeat, "wall_s", r->wall_s, "fragments_per_s", stats_fragments_per_s(r));
     if (json_object_update(root, counters) != 0 || json_object_update(root, rest) != 0) {
         json_decref(root);
         root = NULL;

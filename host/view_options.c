@@ -168,6 +168,13 @@ static host_status set_override(void *target, const option *o, const char *value
     return add_override(target, o, value, n, value + n + 1, error);
 }
 
+static host_status set_energy(void *target, const option *o, const char *value, host_error *error)
+{
+    (void)o, (void)error;
+    ((view_options *)target)->energy = value;
+    return HOST_OK;
+}
+
 static host_status set_background(void *target, const option *o, const char *value, host_error *error)
 {
     uint8_t *background = ((view_options *)target)->background;
@@ -227,6 +234,9 @@ static const option machine_rows[] = {
     {"traversal", 0, "ORDER", false, set_parameter,
      "whole, layer, column, tile; as --set traversal=ORDER\n"
      "(the machine's)"},
+    {"energy", 0, "FILE", false, set_energy,
+     "pJ of operations, for the costs among the statistics\n"
+     "(as hw/energy.txt)"},
 };
 const option_table option_machine = {"Machine:", machine_rows, COUNT(machine_rows)};
 
@@ -262,7 +272,7 @@ void view_options_free(view_options *v)
     v->override_count = 0;
 }
 
-static host_status open_machine(const char *name, vodr_machine *machine, host_error *error)
+host_status view_options_named_machine(const char *name, vodr_machine *machine, host_error *error)
 {
     vodr_error reason;
     vodr_status status;
@@ -281,7 +291,7 @@ static host_status open_machine(const char *name, vodr_machine *machine, host_er
 
 host_status view_options_output(const view_options *v, const char *input, const char *path, host_error *error)
 {
-    const char *const inputs[] = {input, v->transfer, v->machine};
+    const char *const inputs[] = {input, v->transfer, v->machine, v->energy};
     for (size_t i = 0; i < COUNT(inputs); i++) {
         host_status status = output_spare(path, inputs[i], error);
         if (status != HOST_OK)
@@ -290,10 +300,10 @@ host_status view_options_output(const view_options *v, const char *input, const 
     return output_check(path, error);
 }
 
-host_status view_options_machine(const view_options *v, vodr_machine *machine, host_error *error)
+host_status view_options_overridden(const view_options *v, vodr_machine *machine, host_error *error)
 {
     vodr_error reason;
-    host_status status = open_machine(v->machine, machine, error);
+    host_status status = view_options_named_machine(v->machine, machine, error);
     if (status != HOST_OK)
         return status;
     for (size_t i = 0; i < v->override_count; i++) {
@@ -301,7 +311,14 @@ host_status view_options_machine(const view_options *v, vodr_machine *machine, h
         if (vodr_machine_set(machine, o->parameter, o->value, &reason) != VODR_OK)
             return host_fail(error, HOST_BAD_INPUT, "--%s: %s", o->option, reason.text);
     }
-    if (vodr_machine_check(machine, &reason) != VODR_OK)
-        return host_fail(error, HOST_BAD_INPUT, "%s", reason.text);
     return HOST_OK;
+}
+
+host_status view_options_machine(const view_options *v, vodr_machine *machine, host_error *error)
+{
+    vodr_error reason;
+    host_status status = view_options_overridden(v, machine, error);
+    if (status == HOST_OK && vodr_machine_check(machine, &reason) != VODR_OK)
+        return host_fail(error, HOST_BAD_INPUT, "%s", reason.text);
+    return status;
 }

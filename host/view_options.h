@@ -24,7 +24,8 @@ typedef struct view_options {
     const char *machine;
     machine_override *overrides;
     size_t override_count;
-    int32_t threads; /* 0 = all cores */
+    const char *energy; /* a file; NULL: hw/energy.txt */
+    int32_t threads;    /* 0 = all cores */
     vodr_path path;
     vodr_simd simd;
     bool cycles; /* count cycles too */
@@ -42,8 +43,13 @@ void view_options_free(view_options *v);
  * be. */
 host_status view_options_output(const view_options *v, const char *input, const char *path, host_error *error);
 
-/* The machine that --machine names, a named one or a file (a name that holds a '/' or that a file has), with the
- * overrides applied, checked that it can be built. */
+/* The machine that --machine names: a named one or a file (a name that holds a '/' or that a file has). */
+host_status view_options_named_machine(const char *name, vodr_machine *machine, host_error *error);
+
+/* That machine with the overrides applied. */
+host_status view_options_overridden(const view_options *v, vodr_machine *machine, host_error *error);
+
+/* The same, checked that it can be built. */
 host_status view_options_machine(const view_options *v, vodr_machine *machine, host_error *error);
 
 #endif

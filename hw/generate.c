@@ -1,6 +1,7 @@
 /* generate.c - turns the tables of hw/ into a C header, a C source, a Verilog header and a page of the documents.
  *
  *   generate c-header|c-source|verilog|markdown PARAMETERS REGISTERS [MACHINE...] > OUT
+ *   generate c-text NAME FILE > OUT    FILE's text as a C string of that name
  *
  * PARAMETERS, REGISTERS: hw/parameters.txt and hw/registers.txt, whose heads describe their lines. MACHINE: the files
  * of hw/machines, taken over as text; a machine is called what its file is called. Exit 2 with one sentence on a bad
@@ -198,15 +199,38 @@ static void print_literal(const char *text)
     putchar('"');
 }
 
-static bool print_machine(const char *path)
+enum { MAX_FILE = 1 << 14 };
+
+static bool read_text(const char *path, char text[MAX_FILE])
 {
     FILE *file = fopen(path, "r");
     if (!file)
         return complain(path, 0, "cannot open");
-    char text[1 << 14];
-    size_t n = fread(text, 1, sizeof text - 1, file);
+    size_t n = fread(text, 1, MAX_FILE, file);
     fclose(file);
+    if (n == MAX_FILE)
+        return complain(path, 0, "too long");
     text[n] = '\0';
+    return true;
+}
+
+static bool c_text(const char *name, const char *path)
+{
+    char text[MAX_FILE];
+    if (!read_text(path, text))
+        return false;
+    printf("/* Generated from %s: do not edit. */\nextern const char %s[];\nconst char %s[] =\n     ", path, name,
+           name);
+    print_literal(text);
+    puts(";");
+    return true;
+}
+
+static bool print_machine(const char *path)
+{
+    char text[MAX_FILE];
+    if (!read_text(path, text))
+        return false;
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     printf("    {\"%.*s\",\n     ", dot ? (int)(dot - name) : (int)strlen(name), name);
     print_literal(text);
@@ -305,10 +329,13 @@ int main(int argc, char **argv)
 {
     static hardware hw;
     if (argc < 4) {
-        fputs("generate: usage: generate c-header|c-source|verilog|markdown PARAMETERS REGISTERS [MACHINE...]\n",
+        fputs("generate: usage: generate c-header|c-source|verilog|markdown PARAMETERS REGISTERS [MACHINE...]\n"
+              "                generate c-text NAME FILE\n",
               stderr);
         return 2;
     }
+    if (strcmp(argv[1], "c-text") == 0)
+        return c_text(argv[2], argv[3]) && fflush(stdout) == 0 ? 0 : 2;
     hw.machines = argv + 4;
     hw.machine_count = argc - 4;
     if (!read_rows(&hw, false, argv[2]) || !read_rows(&hw, true, argv[3]))

@@ -23,6 +23,20 @@ _vodr_values() {
     "$1" machine show paper-16 2>/dev/null | sed -n "s/^$2 *=[^#]*# \([^ ;]*,[^ ;]*\).*/\1/p" | tr ',' '\n'
 }
 
+# What a sweep may vary; the values of name $3 of them, where they are words.
+_vodr_axes() {
+    _vodr_words "$1" "$2" --over
+    echo
+    _vodr_parameters "$1"
+}
+_vodr_axis_values() {
+    case $3 in
+    machine) _vodr_machines "$1" ;;
+    tf) _vodr_words "$1" "$2" --tf ;;
+    *) _vodr_values "$1" "$3" ;;
+    esac
+}
+
 _vodr_machines() {
     "$1" machine list 2>/dev/null | sed 's/ .*//'
 }
@@ -40,12 +54,18 @@ _vodr_value() {
         *) _vodr_parameters "$1" | sed 's/$/=/' ;;
         esac
         ;;
+    --over)
+        case $4 in
+        *=*) _vodr_axis_values "$1" "$2" "${4%%=*}" | sed "s/^/${4%"${4##*[=,]}"}/" ;;
+        *) _vodr_axes "$1" "$2" | sed -e '/./!d' -e 's/$/=/' ;;
+        esac
+        ;;
     --blend | --filter | --traversal) _vodr_values "$1" "${3#--}" ;;
     --tf)
         _vodr_words "$1" "$2" "$3"
         compgen -f -- "$4"
         ;;
-    --type | --endian) _vodr_words "$1" "$2" "$3" ;;
+    --type | --endian | --plot-type) _vodr_words "$1" "$2" "$3" ;;
     --projection) printf '%s\n' parallel perspective perspective: ;;
     *) if _vodr_options "$1" "$2" | grep -q -e "^$3 .*\(\.[a-z]\|FILE\)"; then compgen -f -- "$4"; fi ;;
     esac

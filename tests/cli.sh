@@ -81,12 +81,12 @@ raw="v.raw --dims 16x8x8"
 
 # ---- help and version ----
 good "vodr --help" "$vodr" --help
-for command in render compare machine info; do
+for command in render compare machine info sweep; do
     expect "vodr --help names $command" "^  $command " ../out-$$
 done
 good "vodr --version" "$vodr" --version
 expect "vodr --version" '^vodr [0-9]' ../out-$$
-for command in compare machine info; do
+for command in compare machine info sweep; do
     good "vodr $command --help" "$vodr" $command --help
     expect "vodr $command --help has an example" '^Example' ../out-$$
 done
@@ -124,6 +124,11 @@ done
     verdict "raw: 16x8 pixels of 8 bytes" "$([ "$(wc -c <e.rgba)" -eq 1024 ] || wc -c e.rgba)"
     good "perspective, mip, background" "$vodr" render $raw --projection perspective:60 --blend mip -o f.png \
         --background ff8000 --size 20x10 --slices 9 --zoom 1.5 --window 0:200 --tf bone --crop 0:8,0:8,0:8
+    good "--energy" "$vodr" render $raw --stats energy.json
+    printf 'dram_byte | 0\n' >free.txt
+    good "--energy" "$vodr" render $raw --stats free.json --energy free.txt
+    expect "stats: costs" '"offchip_pj": [1-9]' energy.json
+    expect "stats: costs by another table" '"offchip_pj": 0,' free.json
     good "--repeat" "$vodr" render $raw --repeat 3 --stats g.json
     good "options may end with --" "$vodr" render --dims 16x8x8 -- v.raw
     good "outputs to devices" "$vodr" render $raw -o /dev/null --raw /dev/null
@@ -259,6 +264,9 @@ refuse path slow Fast ""
     printf 'ways = 4\nways = 4\n' >twice.txt
     bad 2 "twice.txt:2" "$vodr" render $raw -o no.png --machine twice.txt
     bad 2 "'unknown'" "$vodr" render $raw -o no.png --tf unknown
+    bad 2 "'none.txt'" "$vodr" render $raw -o no.png --energy none.txt
+    printf 'add | 0.03\ndivide | 2\n' >odd.txt
+    bad 2 "odd.txt:2: there is no energy 'divide'" "$vodr" render $raw -o no.png --energy odd.txt
     printf '0 0 0 0 0\n1 0 0 2 0\n' >tf2.txt
     bad 2 "tf2.txt:2: b is '2'" "$vodr" render $raw -o no.png --tf tf2.txt
     bad 2 "both name 'no.png'" "$vodr" render $raw -o no.png --raw no.png

@@ -51,6 +51,7 @@ offers() {
 # What the program says of itself, read here in another way than the completion does.
 commands=$("$vodr" --help | awk '/^$/ { block++ } block == 2 && NF { print $1 }')
 machines=$("$vodr" machine list | awk '{ print $1 }')
+axes='volume= view= projection= zoom= size= slices= tf= window= crop= machine='
 parameters=$("$vodr" machine show paper-16 | awk '$2 == "=" { print $1 "=" }')
 
 values() { # PARAMETER
@@ -69,6 +70,9 @@ values() { # PARAMETER
     offers 'machine show ' $machines
     offers 'render --set ' $parameters
     offers 'report volume.nrrd --set=' $parameters
+    offers 'sweep volume.nrrd --over ' $axes $parameters
+    offers 'sweep --over traversal=tile,' $(values traversal | tr ' ' '\n' | sed -n 's/^./tile,&/p')
+    offers 'sweep --over=machine=' $machines
     offers 'render --set fb_layout=' $(values fb_layout)
     offers 'render --blend=' $(values blend)
     offers 'render --filter ' $(values filter)
@@ -82,6 +86,9 @@ offers 'render --tf=sk' skin-bone
 offers 'render --endian ' little big
 offers 'render --projection pers' perspective perspective:
 offers 'render --zoom ' ''
+offers 'sweep --plot-type ' line bar heat pareto
+offers 'sweep --list ' volume.nrrd
+offers 'sweep vol' volume.nrrd
 offers 'render vol' volume.nrrd
 offers 'render -o vol' volume.nrrd
 offers 'render --alpha vol' volume.nrrd

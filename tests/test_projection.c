@@ -47,9 +47,10 @@ static int64_t (*all_positions(const vodr_view *v))[3]
 }
 
 /* Returns how many fragments the box has within the clip. */
-static int check_box(const vodr_view *v, int64_t (*position)[3], const vox_box *box, const px_rect *clip)
+static int check_box(const vodr_view *v, const int32_t dims[3], int64_t (*position)[3], const vox_box *box,
+                     const px_rect *clip)
 {
-    projection p = projection_of(v);
+    projection p = projection_of(v, dims);
     px_rect bound;
     int32_t k0, k1;
     bool seen = projection_bound(&p, box, clip, &bound, &k0, &k1);
@@ -89,7 +90,7 @@ static void small_frames(void **state)
                 box.hi[i] = eye >= 0 && eye < dims[i] ? (int32_t)eye + 1 : box.hi[i];
             }
             px_rect clip = random_clip(&c, &v);
-            hit += check_box(&v, positions, &box, &clip) > 0;
+            hit += check_box(&v, dims, positions, &box, &clip) > 0;
         }
         free(positions);
     }
@@ -122,36 +123,92 @@ static vodr_view extreme_view(rng *c, const int32_t dims[3], bool perspective)
     }
 }
 
+/* As long as so many bits allow, or any shorter one. */
+static int64_t long_step(rng *c, int bits, bool any)
+{
+    int64_t limit = (int64_t)1 << bits, step = limit - rng_int(c, 1, limit / 4);
+    return any ? unit_signed(c, bits) : rng_one_in(c, 2) ? step : -step;
+}
+
+/* Frames of one pixel and one slice say nothing about their steps: these are as long as the inverse takes, and longer.
+ */
+static vodr_view single_sample_view(rng *c, const int32_t dims[3], bool perspective)
+{
+    for (;;) {
+        vodr_view v = unit_wild_view(c, dims, perspective);
+        bool any = rng_one_in(c, 2);
+        int bits = (int)rng_int(c, 40, 43);
+        v.width_px = v.height_px = v.slices = 1;
+        if (perspective)
+            v.depth_first = rng_int(c, 1, 3) << 16;
+        for (int i = 0; i < 3; i++) {
+            v.base[i] = unit_signed(c, 42);
+            v.step_u[i] = long_step(c, bits, any);
+            v.step_v[i] = long_step(c, bits, any);
+            v.step_s[i] = long_step(c, bits, any);
+        }
+        if (vodr_view_check(&v, dims, NULL) == VODR_OK)
+            return v;
+    }
+}
+
+static bool in_volume(const int64_t position[3], const int32_t dims[3])
+{
+    const int32_t origin[3] = {0, 0, 0};
+    return unit_inside(position, origin, dims);
+}
+
+/* Samples of one view; returns how many lay in the volume. */
+static int check_samples(rng *c, const vodr_view *v, const int32_t dims[3], int round)
+{
+    projection p = projection_of(v, dims);
+    px_rect frame = {0, 0, v->width_px, v->height_px}, bound;
+    int fragments = 0;
+    for (int n = 0; n < 20; n++) {
+        int32_t x = (int32_t)rng_int(c, 0, v->width_px - 1), y = (int32_t)rng_int(c, 0, v->height_px - 1);
+        int32_t k = (int32_t)rng_int(c, 0, v->slices - 1), k0, k1;
+        int64_t position[3];
+        unit_position(v, x, y, k, position);
+        if (!in_volume(position, dims))
+            continue;
+        fragments++;
+        vox_box box;
+        for (int i = 0; i < 3; i++) { /* any box that holds the sample */
+            int32_t voxel = (int32_t)(position[i] >> 24);
+            box.lo[i] = (int32_t)rng_int(c, voxel > n ? voxel - n : 0, voxel);
+            box.hi[i] = (int32_t)rng_int(c, voxel + 1, voxel + 1 + n < dims[i] ? voxel + 1 + n : dims[i]);
+        }
+        if (!projection_bound(&p, &box, &frame, &bound, &k0, &k1) || !in_rect(&bound, x, y) || k < k0 || k >= k1)
+            fail_msg("view %d: the fragment of pixel (%d,%d) on slice %d lies outside", round, x, y, k);
+    }
+    return fragments;
+}
+
+/* Whether a box can be bounded at all. */
+static bool inverted(const vodr_view *v, const int32_t dims[3])
+{
+    projection p = projection_of(v, dims);
+    return p.x.m[0] || p.x.m[1] || p.x.m[2];
+}
+
 static void extreme_frames(void **state)
 {
     (void)state;
     rng c = {82};
-    const int32_t dims[3] = {64, 64, 64};
-    int usable = 0;
-    for (int round = 0; round < 30000; round++) {
+    int usable = 0, fragments = 0, single = 0;
+    for (int round = 0; round < 40000; round++) {
+        const int32_t largest = rng_one_in(&c, 2) ? 64 : VODR_MAX_DIM_VOX;
+        const int32_t dims[3] = {largest, (int32_t)rng_int(&c, 1, largest), (int32_t)rng_int(&c, 1, largest)};
         vodr_view v = extreme_view(&c, dims, rng_one_in(&c, 2));
-        projection p = projection_of(&v);
-        px_rect frame = {0, 0, v.width_px, v.height_px}, bound;
-        usable += p.usable;
-        for (int n = 0; n < 20; n++) {
-            int32_t x = (int32_t)rng_int(&c, 0, v.width_px - 1), y = (int32_t)rng_int(&c, 0, v.height_px - 1);
-            int32_t k = (int32_t)rng_int(&c, 0, v.slices - 1), k0, k1;
-            int64_t position[3];
-            unit_position(&v, x, y, k, position);
-            vox_box box;
-            for (int i = 0; i < 3; i++) { /* any box that holds the sample */
-                int32_t voxel = (int32_t)(position[i] >> 24);
-                box.lo[i] = voxel - (int32_t)rng_int(&c, 0, n);
-                box.hi[i] = voxel + 1 + (int32_t)rng_int(&c, 0, n);
-            }
-            if (!projection_bound(&p, &box, &frame, &bound, &k0, &k1) || !in_rect(&bound, x, y) || k < k0 || k >= k1)
-                fail_msg("view %d: the fragment of pixel (%d,%d) on slice %d lies outside", round, x, y, k);
-        }
+        usable += inverted(&v, dims);
+        fragments += check_samples(&c, &v, dims, round);
+        v = single_sample_view(&c, dims, rng_one_in(&c, 2));
+        single += inverted(&v, dims) && check_samples(&c, &v, dims, round) > 0;
     }
-    assert_true(usable > 1000);
+    assert_true(usable > 10000 && fragments > 10000 && single > 100);
 }
 
-/* It must save work, too: a brick of a plain view is bounded to within a few pixels and slices. */
+/* It must save work, too: a brick of a plain view is bounded to its own pixels and slices. */
 static void bounds_are_close(void **state)
 {
     (void)state;
@@ -163,15 +220,15 @@ static void bounds_are_close(void **state)
     for (int perspective = 0; perspective < 2; perspective++) {
         cam.perspective = perspective;
         assert_int_equal(camera_view(&cam, &geometry, &v, &depth, &error), HOST_OK);
-        projection p = projection_of(&v);
+        projection p = projection_of(&v, geometry.dims_vox);
         const vox_box box = {{24, 32, 40}, {32, 40, 48}};
         px_rect frame = {0, 0, 64, 64}, bound;
         int32_t k0, k1;
         assert_true(projection_bound(&p, &box, &frame, &bound, &k0, &k1));
-        int32_t most = perspective ? 32 : 12; /* the brick's own 8, or 11 near the eye, and margins */
-        assert_true(bound.x1 - bound.x0 <= most && bound.y1 - bound.y0 <= most && k1 - k0 <= 12);
-        const vox_box aside = {{200, 0, 0}, {208, 8, 8}};
-        assert_false(projection_bound(&p, &aside, &frame, &bound, &k0, &k1));
+        int32_t most = perspective ? 11 : 8; /* the brick's own 8, or as it looks near the eye */
+        assert_true(bound.x1 - bound.x0 <= most && bound.y1 - bound.y0 <= most && k1 - k0 <= 8);
+        const px_rect aside = {0, 0, 8, 8};
+        assert_false(projection_bound(&p, &box, &aside, &bound, &k0, &k1));
     }
 }
 

@@ -80,7 +80,8 @@ static void spans_are_what_every_pixel_says(void **state)
         random_slice(&c, width, height, &s);
         px_rect bound = {(int32_t)rng_int(&c, 0, width - 1), (int32_t)rng_int(&c, 0, height - 1), 0, 0};
         bound.x1 = (int32_t)rng_int(&c, bound.x0, bound.x0 + MOST_PX < width ? bound.x0 + MOST_PX : width);
-        bound.y1 = (int32_t)rng_int(&c, bound.y0, bound.y0 + 8 < height ? bound.y0 + 8 : height);
+        int32_t rows = rng_one_in(&c, 8) ? 3 * RASTER_ROWS : 8;
+        bound.y1 = (int32_t)rng_int(&c, bound.y0, bound.y0 + rows < height ? bound.y0 + rows : height);
         rasterizer r;
         rasterizer_start(&r, &s, &bound);
         span run = {.y = -1};
@@ -97,7 +98,7 @@ static void spans_are_what_every_pixel_says(void **state)
                 continue;
             assert_true(run.x0 >= bound.x0 && run.x1 <= bound.x1 && run.x1 == last + 1);
             for (int i = 0; i < 3; i++)
-                assert_true((wide_int)run.a[i] == numerator(&s.plane, i, run.x0, y));
+                assert_true((wide_int)numerator_at(&s.plane, i, run.x0, y) == numerator(&s.plane, i, run.x0, y));
             more = rasterizer_next(&r, &run);
         }
         assert_false(more);

@@ -98,14 +98,14 @@ static void check_filter(const subject *s, const vodr_machine *m, texture_unit *
 {
     int64_t a = rng_int(c, 0, 1), half = ONE / 2;
     brick_slice slice = {.k = 0};
-    span run = {.x0 = 5, .x1 = 8};
+    const span run = {.x0 = 5, .x1 = 8};
     uint16_t got[3];
     for (int i = 0; i < 3; i++) {
         int64_t p = random_position(c, box->lo[i], box->hi[i]);
         /* Three samples inside the box, or three times the same one. */
         slice.plane.step_u[i] = p + 2 * half < (int64_t)box->hi[i] * ONE ? half * a : 0;
         view->base[i] = p - 1000;
-        run.a[i] = 1000;
+        slice.plane.origin[i] = 1000 - run.x0 * slice.plane.step_u[i];
     }
     texture_unit_filter(t, &slice, &run, got);
     uint64_t each = (m->filter == VODR_FILTER_LINEAR ? 8 : 1) * (m->density_bits == 12 ? 2 : 1);
@@ -162,8 +162,8 @@ static void perspective_floors_each_position(void **state)
     vodr_view view = {.perspective = true, .shift = 5, .base = {2 * ONE, 0, 0}};
     texture_unit t;
     assert_int_equal(texture_unit_start(&t, &m, &s.volume, &s.table, &view, NULL), VODR_OK);
-    brick_slice slice = {.plane.step_u = {1, 0, 0}};
-    span run = {.x0 = 0, .x1 = 3, .a = {-2, 0, 0}};
+    brick_slice slice = {.plane.step_u = {1, 0, 0}, .plane.origin = {-2, 0, 0}};
+    const span run = {.x0 = 0, .x1 = 3};
     uint16_t got[3];
     texture_unit_filter(&t, &slice, &run, got);
     assert_int_equal(got[0], 2);

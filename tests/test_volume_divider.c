@@ -212,11 +212,56 @@ static void check_pixel(const walk *w, int32_t x, int32_t y)
     }
 }
 
+/* Boxes bounded in a tile below loop `level`, the loops outside it standing at `first` to `last`. */
+static int64_t plain_boxes(const walk *w, const projection *p, const px_rect *tile, int level, int32_t first[3],
+                           int32_t last[3])
+{
+    bool column = w->machine.traversal == VODR_TRAVERSAL_COLUMN;
+    int dominant = plain_dominant(&w->view), other[2], n = 0;
+    for (int c = 2; c >= 0; c--)
+        if (c != dominant)
+            other[n++] = c;
+    int axis = column ? (level < 2 ? other[level] : dominant) : level > 0 ? other[level - 1] : dominant;
+    int64_t boxes = 0;
+    for (int32_t i = 0; i < w->count[axis]; i++) {
+        vox_box box;
+        px_rect bound;
+        int32_t k0, k1;
+        first[axis] = last[axis] = i;
+        for (int c = 0; c < 3; c++) {
+            int32_t end = (last[c] + 1) * w->edge[c];
+            box.lo[c] = first[c] * w->edge[c];
+            box.hi[c] = end < w->dims[c] ? end : w->dims[c];
+        }
+        boxes++;
+        if (projection_bound(p, &box, tile, &bound, &k0, &k1) && level < 2)
+            boxes += plain_boxes(w, p, tile, level + 1, first, last);
+    }
+    first[axis] = 0;
+    last[axis] = w->count[axis] - 1;
+    return boxes;
+}
+
+/* Cycles of the search, by docs/timing.md, section 2. */
+static int64_t plain_search(const walk *w)
+{
+    projection p = projection_of(&w->view, w->dims);
+    int64_t boxes = 0;
+    for (int32_t y = w->window.y0; y < w->window.y1; y += w->tile)
+        for (int32_t x = w->window.x0; x < w->window.x1; x += w->tile) {
+            px_rect tile = {x, y, x + w->tile < w->window.x1 ? x + w->tile : w->window.x1,
+                            y + w->tile < w->window.y1 ? y + w->tile : w->window.y1};
+            int32_t first[3] = {0, 0, 0}, last[3] = {w->count[0] - 1, w->count[1] - 1, w->count[2] - 1};
+            boxes += plain_boxes(w, &p, &tile, 0, first, last);
+        }
+    return boxes * w->machine.brick_setup_cycles;
+}
+
 static void run_walk(walk *w)
 {
     volume_divider d;
     candidate k;
-    int64_t last = -1;
+    int64_t last = -1, work = 0;
     double done = 0;
     start_walk(w, &d);
     while (volume_divider_next(&d, &k)) {
@@ -226,7 +271,9 @@ static void run_walk(walk *w)
         double now = volume_divider_done(&d);
         assert_true(now >= done && now < 1);
         done = now;
+        work += volume_divider_work(&d);
     }
+    assert_int_equal(work + volume_divider_work(&d), plain_search(w));
     for (int32_t y = w->window.y0; y < w->window.y1; y++)
         for (int32_t x = w->window.x0; x < w->window.x1; x++)
             check_pixel(w, x, y);
@@ -362,6 +409,8 @@ static void empty_bricks(void **state)
         while (volume_divider_next(&d, &k))
             visits++;
         assert_int_equal(visits, 8 - cases[i].empty);
+        /* two slabs, four rows, what is left of eight bricks; a look at each of the others */
+        assert_int_equal(volume_divider_work(&d), (2 + 4 + visits) * 32 + cases[i].empty);
         volume_divider_finish(&d);
     }
 }
