@@ -239,9 +239,7 @@ expect "machine list has paper-32" '^paper-32 ' ../out-$$
     bad 2 "both name 'no.png'" "$vodr" reference $raw -o no.png --raw no.png
     bad 2 "none.nrrd" "$vodr" reference none.nrrd -o no.png
     bad 3 "'none/x'" "$vodr" reference $raw --raw none/x
-    CUDA_VISIBLE_DEVICES='' && export CUDA_VISIBLE_DEVICES
-    bad 3 "CUDA" "$vodr" reference $raw -o no.png --device cuda
-    unset CUDA_VISIBLE_DEVICES
+    bad 3 "CUDA" env CUDA_VISIBLE_DEVICES= "$vodr" reference $raw -o no.png --device cuda
 }
 
 # ---- compare ----
