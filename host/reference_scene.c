@@ -23,31 +23,25 @@ host_status reference_scene_status(reference_status status)
 
 /* ---- voxels ---- */
 
-/* Turns the bits of `flip` over in every voxel. */
-static void flip_bits(void *voxels, size_t count, size_t bytes, uint16_t flip)
+/* Integers: counted from the least value on, so that they are unsigned, rise with their values - the greatest is that
+ * of a maximum - and lose little where a float places them in a window. */
+static void make_rising(volume *v, stored *s)
 {
-    uint8_t *narrow = voxels;
-    uint16_t *wide = voxels;
-    for (size_t i = 0; i < count; i++) {
-        if (bytes == 1)
-            narrow[i] ^= (uint8_t)flip;
-        else
-            wide[i] ^= flip;
-    }
-}
-
-/* Integers of `bits`: made unsigned, and to rise with their values, so that the greatest is that of a maximum. */
-static void make_rising(volume *v, int bits, bool is_signed, stored *s)
-{
-    const uint16_t all = (uint16_t)((1u << bits) - 1), sign = (uint16_t)(1u << (bits - 1));
-    const double least = is_signed ? -(double)sign : 0;
-    const bool falls = v->slope < 0;
-    const uint16_t flip = (uint16_t)((is_signed ? sign : 0) ^ (falls ? all : 0));
-    if (flip)
-        flip_bits(v->voxels, volume_count(v), (size_t)bits / 8, flip);
-    s->volume.type = bits == 8 ? REFERENCE_UINT8 : REFERENCE_UINT16;
+    const int64_t base = llround((v->min - v->inter) / v->slope);
+    const int sign = v->slope < 0 ? -1 : 1;
+    const bool narrow = volume_type_bytes(v->type) == 1;
+    uint8_t *voxels_8 = v->voxels;
+    uint16_t *voxels_16 = v->voxels;
+    s->volume.type = narrow ? REFERENCE_UINT8 : REFERENCE_UINT16;
     s->scale = fabs(v->slope);
-    s->offset = v->inter + v->slope * (falls ? least + all : least);
+    s->offset = v->inter + v->slope * (double)base;
+    if (base == 0 && sign > 0)
+        return;
+    for (size_t i = 0, n = volume_count(v); i < n; i++) /* modulo 2^8 or 2^16, signed or not */
+        if (narrow)
+            voxels_8[i] = (uint8_t)(sign * (voxels_8[i] - base));
+        else
+            voxels_16[i] = (uint16_t)(sign * (voxels_16[i] - base));
 }
 
 /* A voxel and its float are as wide. */
@@ -64,13 +58,10 @@ static stored store(volume *v)
 {
     stored s = {.volume = {.type = REFERENCE_FLOAT32, .voxels = v->voxels}, .scale = 1};
     memcpy(s.volume.dims_vox, v->dims_vox, sizeof s.volume.dims_vox);
-    switch (v->type) {
-    case VOLUME_UINT8: make_rising(v, 8, false, &s); break;
-    case VOLUME_INT8: make_rising(v, 8, true, &s); break;
-    case VOLUME_UINT16: make_rising(v, 16, false, &s); break;
-    case VOLUME_INT16: make_rising(v, 16, true, &s); break;
-    default: make_floats(v);
-    }
+    if (volume_type_bytes(v->type) < sizeof(float))
+        make_rising(v, &s);
+    else
+        make_floats(v);
     v->quantised = true;
     return s;
 }

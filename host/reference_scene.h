@@ -30,8 +30,8 @@ typedef struct reference_scene {
 } reference_scene;
 
 /* Puts the volume of `s`, opened by scene_open_stored(), on the device; the voxels become densities (fixed), or are
- * brought into a form that floating point reads: signed ones moved up to unsigned, 32-bit integers rounded to float32,
- * those that are not finite replaced by the minimum. To be closed on success, before the scene is; callable once a
+ * brought into a form that floating point reads: integers counted from the least, those of 32 bits rounded to float32,
+ * what is not finite replaced by the minimum. To be closed on success, before the scene is; callable once a
  * scene. HOST_ENVIRONMENT where there is no device, or no room on it. */
 host_status reference_scene_open(scene *s, const reference_choice *choice, int32_t threads, vodr_simd simd,
                                  reference_scene *r, host_error *error);
