@@ -68,14 +68,18 @@ static bool fixed_agrees(test_case *c, FILE *file)
 
 /* ---- floating point ---- */
 
-/* Premultiplied, with stretches that show nothing, and with entries that are opaque. */
+/* Premultiplied; stretches show nothing, in every third table all but one; entries may be opaque. */
 static void fill_table(rng *r, double rgba[4 * COLUMNS * ROWS])
 {
+    const bool sparse = rng_one_in(r, 3);
+    const int only = (int)rng_int(r, 0, COLUMNS - 1);
     bool shows = rng_one_in(r, 2);
     double most = rng_one_in(r, 4) ? 1 : rng_real(r, 0.001, 0.3);
     for (int i = 0; i < COLUMNS * ROWS; i++) {
         if (i % COLUMNS == 0 || rng_one_in(r, 12))
             shows = !shows;
+        if (sparse)
+            shows = i % COLUMNS >= only && i % COLUMNS < only + 4;
         rgba[4 * i + 3] = shows ? rng_real(r, 0, most) : 0;
         for (int c = 0; c < 3; c++)
             rgba[4 * i + c] = rgba[4 * i + 3] * rng_real(r, 0, 1);
@@ -100,7 +104,7 @@ static reference_march_job random_job(test_case *c, double *rgba)
         .blend = rng_one_in(r, 3) ? REFERENCE_MIP : REFERENCE_OVER,
         .filter = rng_one_in(r, 4) ? REFERENCE_NEAREST : REFERENCE_LINEAR,
         .shading = rng_one_in(r, 3) ? REFERENCE_PHONG : REFERENCE_UNLIT,
-        .block_vox = (int32_t)rng_int(r, 2, 64),
+        .block_vox = (int32_t)(rng_one_in(r, 4) ? rng_int(r, 2, 64) : rng_int(r, 2, 4)),
         .termination = rng_one_in(r, 3) ? 2 : rng_real(r, 0.3, 1),
         .table = {COLUMNS, by_gradient ? ROWS : 1, rgba, by_gradient ? rng_real(r, 0.05, 1) : 0},
         .window_scale = 1 / width,

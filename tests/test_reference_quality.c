@@ -138,6 +138,25 @@ static void test_rays(void **state)
         }
 }
 
+/* In a parallel view rays with a sample every slice's share of the depth sample the slices themselves. */
+static void test_rays_on_slices(void **state)
+{
+    (void)state;
+    static const camera eye = {30, 20, 0, false, 40, 0.8, 48, 48, 31};
+    scene s;
+    size_t channels;
+    reference_choice slices = slices_in(REFERENCE_DOUBLE), rays = slices;
+    stage(&s, "head", "skin-bone", wide, &eye);
+    rays.method = REFERENCE_RAYCAST;
+    rays.step_vox = s.depth_vox;
+    scene_close(&s);
+    double *a = march_phantom("head", "skin-bone", wide, &eye, &slices, &channels);
+    double *b = march_phantom("head", "skin-bone", wide, &eye, &rays, &channels);
+    assert_true(staged_psnr(a, b, channels) >= 90);
+    free(a);
+    free(b);
+}
+
 /* A ray that ends early leaves out at most what its remaining transparency lets through. */
 static void test_termination(void **state)
 {
@@ -162,6 +181,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slices),
         cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_rays_on_slices),
         cmocka_unit_test(test_termination),
     };
     return cmocka_run_group_tests_name("reference quality", tests, NULL, NULL);
