@@ -47,7 +47,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep contact-sheet crosscheck fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -80,6 +80,11 @@ fuzz: ## fuzz every parser for an hour each, two at a time
 
 contact-sheet: $(BUILD)/vodr ## draw every real volume at hand into build/contact-sheet/
 	@scripts/contact-sheet $(BUILD)
+
+crosscheck: ## hold the machine against the reference renderer: docs/crosscheck.md, build/crosscheck.html
+	@scripts/deps build
+	@$(MAKE) -s $(PARALLEL) all
+	@scripts/crosscheck $(BUILD)
 
 bench-model: $(BUILD)/vodr ## measure the model beside a software rasterizer, and write its table in the README again
 	@scripts/tables $(BUILD) model
@@ -114,7 +119,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views cycles tour
+	@scripts/tables $(BUILD) size table1 views cycles tour gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles

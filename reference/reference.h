@@ -85,7 +85,7 @@ typedef enum reference_shading { REFERENCE_UNLIT, REFERENCE_PHONG } reference_sh
 typedef enum reference_accel {
     REFERENCE_ACCEL_NONE,
     REFERENCE_ACCEL_BLOCK, /* a block that is transparent, or cannot raise the maximum, is left at its far side */
-    REFERENCE_ACCEL_BEST,  /* the fastest there is; over: blocks know how far the nearest visible one is */
+    REFERENCE_ACCEL_BEST,  /* over: blocks also know how far the nearest visible one is; mip: as block */
 } reference_accel;
 
 /* The rays of a frame. With o = origin[0] + x*origin[1] + y*origin[2] and d likewise, sample j, 0 the nearest, lies at
