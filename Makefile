@@ -12,8 +12,17 @@ SANITIZE ?=
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
 STRICT   := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -ffp-contract=off \
             -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-psabi -Werror
-INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -isystem /usr/include/nifti
+INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -isystem /usr/include/nifti
 COMPILE   = $(CC) $(STRICT) $(CFLAGS) $(SANITIZE) $(INCLUDES) -pthread -MMD -MP
+REFERENCE_MATHS := -fno-math-errno -fno-trapping-math # lanes take square roots side by side; no result changes
+
+# CUDA is optional: without nvcc the reference renderer draws on the CPU only. NVCC= leaves it out.
+NVCC     ?= $(firstword $(shell command -v nvcc) $(wildcard /usr/local/cuda/bin/nvcc))
+CUDA_ARCH ?= $(if $(shell command -v nvidia-smi),native,compute_80)
+NVCCFLAGS := -std=c++17 -O3 -arch=$(CUDA_ARCH) -Xcompiler -Wall,-Wextra
+CUDA_HOME := $(patsubst %/bin/nvcc,%,$(realpath $(NVCC)))
+CUDA_LIBRARIES := $(if $(NVCC),-L$(CUDA_HOME)/lib64 -lcudart_static -lstdc++ -ldl -lrt)
+
 LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
 
 HW       := hw/parameters.txt hw/registers.txt
@@ -22,17 +31,23 @@ GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.v
 CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vodr_hw.o
 HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
             $(BUILD)/gen/energy_text.o
+REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
+             $(BUILD)/reference/$(if $(NVCC),device_cuda.o,device_no_cuda.o)
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
+REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_gpu_record,$(TESTS))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
+# What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
+RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
+            host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch]))
 SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep findings contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-sweep findings contact-sheet crosscheck fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -65,6 +80,11 @@ fuzz: ## fuzz every parser for an hour each, two at a time
 
 contact-sheet: $(BUILD)/vodr ## draw every real volume at hand into build/contact-sheet/
 	@scripts/contact-sheet $(BUILD)
+
+crosscheck: ## hold the machine against the reference renderer: docs/crosscheck.md, build/crosscheck.html
+	@scripts/deps build
+	@$(MAKE) -s $(PARALLEL) all
+	@scripts/crosscheck $(BUILD)
 
 bench-model: $(BUILD)/vodr ## measure the model beside a software rasterizer, and write its table in the README again
 	@scripts/tables $(BUILD) model
@@ -104,7 +124,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views cycles tour machines
+	@scripts/tables $(BUILD) size table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
@@ -142,21 +162,45 @@ $(BUILD)/libvodr.a: $(CMODEL)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
+ifeq ($(shell uname -m),x86_64)
+$(BUILD)/reference/cpu_avx2.o: CFLAGS += -mavx2
+$(BUILD)/reference/cpu_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
+endif
+
+$(BUILD)/%.o: %.cu | $(GEN)
+	@mkdir -p $(@D)
+	$(NVCC) $(NVCCFLAGS) -I$(BUILD)/gen -Icmodel -Ireference -Ibench/record -MMD -MP -c -o $@ $<
+
+$(BUILD)/libreference.a: $(REFERENCE)
+	@rm -f $@
+	ar rcs $@ $^
+
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
 	ar rcs $@ $^
 
-$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libvodr.a
-	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
+$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
+
+$(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
+	$(NVCC) -o $@ $^
 
 $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
+$(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
+
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs
 .DELETE_ON_ERROR:

@@ -5,6 +5,7 @@
 #include "host.h"
 #include "options.h"
 
-extern const command command_render, command_compare, command_info, command_machine, command_report, command_sweep;
+extern const command command_render, command_reference, command_compare, command_info, command_machine, command_report,
+    command_sweep;
 
 #endif

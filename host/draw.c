@@ -11,7 +11,7 @@ static int compare_times(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double median(double *times, int count)
+double draw_median(double *times, int count)
 {
     qsort(times, (size_t)count, sizeof *times, compare_times);
     return (times[(count - 1) / 2] + times[count / 2]) / 2;
@@ -51,7 +51,7 @@ host_status draw(const scene *s, const vodr_machine *machine, const draw_options
         status = draw_once(s, machine, &options, r, &times[i], error);
     progress_end(&line);
     if (status == HOST_OK)
-        r->wall_s = median(times, how->repeat);
+        r->wall_s = draw_median(times, how->repeat);
     r->repeat = how->repeat;
     free(times);
     return status == HOST_OK ? digest_frame(&r->frame, r->frame_sha256, error) : status;

@@ -26,6 +26,9 @@ typedef struct draw_options {
     const vodr_observer *observer;
 } draw_options;
 
+/* The median of `count` times, which are put in order. */
+double draw_median(double *times, int count);
+
 /* Draws `repeat` times on `machine`, whose picture parameters are the scene's own; the frame and counters are those of
  * the last, all being equal. *r is zeroed or holds an earlier result, whose frame is freed. Runs of less than a second,
  * and those whose standard error is no terminal, show no progress. */

@@ -7,8 +7,8 @@
 #include "commands.h"
 #include "vodr.h"
 
-static const command *const commands[] = {&command_render,  &command_report, &command_sweep,
-                                          &command_compare, &command_info,   &command_machine};
+static const command *const commands[] = {&command_render,  &command_reference, &command_report, &command_sweep,
+                                          &command_compare, &command_info,      &command_machine};
 
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
@@ -20,7 +20,7 @@ static void print_help(void)
         printf("  %-10s %s\n", commands[i]->name, commands[i]->summary);
     printf(
         "\nExit code: 0 done; 1 a comparison failed; 2 bad usage or bad input; 3 the environment (unwritable output,\n"
-        "disk full, no memory).\n\nExample:\n%s\n",
+        "disk full, no memory, no CUDA device).\n\nExample:\n%s\n",
         command_render.example);
 }
 

@@ -6,6 +6,7 @@
 #include "cycle_stats.h"
 #include "draw.h"
 #include "image.h"
+#include "output_set.h"
 #include "registers.h"
 #include "stats.h"
 #include "text.h"
@@ -21,13 +22,16 @@ typedef struct render_options {
     int repeat;
 } render_options;
 
+static output_set outputs_of(render_options *options)
+{
+    return (output_set){output_option, OUTPUTS, options->path};
+}
+
 static host_status set_output(void *target, const option *o, const char *value, host_error *error)
 {
     (void)error;
-    render_options *options = target;
-    for (int i = 0; i < OUTPUTS; i++)
-        if (strcmp(o->name, output_option[i]) == 0)
-            options->path[i] = value;
+    const output_set set = outputs_of(target);
+    output_set_path(&set, o->name, value);
     return HOST_OK;
 }
 
@@ -53,67 +57,24 @@ static const option_table table = {"Output (none is required):", rows, sizeof ro
 
 /* ---- output ---- */
 
-static host_status check_outputs(const char *input, const render_options *options, host_error *error)
-{
-    for (int i = 0; i < OUTPUTS; i++) {
-        for (int j = 0; options->path[i] && j < i; j++)
-            if (options->path[j] && strcmp(options->path[i], options->path[j]) == 0 &&
-                strncmp(options->path[i], "/dev/", 5) != 0)
-                return host_fail(error, HOST_BAD_INPUT, "--%s and --%s both name '%s'", output_option[j],
-                                 output_option[i], options->path[i]);
-        host_status status = HOST_OK;
-        if (options->path[i])
-            status = view_options_output(&options->view, input, options->path[i], error);
-        if (status != HOST_OK)
-            return status;
-    }
-    return HOST_OK;
-}
+typedef struct drawn {
+    const render_options *options;
+    const scene *scene;
+    const result *result;
+} drawn;
 
-static host_status write_one(int i, output *o, const render_options *options, const scene *s, const result *r,
-                             host_error *error)
+static host_status write_one(void *context, int i, output *o, host_error *error)
 {
-    image_style style = {.alpha = options->view.alpha};
-    memcpy(style.background, options->view.background, sizeof style.background);
-    host_status status = output_open(o, options->path[i], error);
-    if (status != HOST_OK)
-        return status;
+    const drawn *d = context;
+    const view_options *v = &d->options->view;
+    image_style style = {.alpha = v->alpha};
+    memcpy(style.background, v->background, sizeof style.background);
     switch (i) {
-    case PNG: status = image_write_png(o, &r->frame, &style, error); break;
-    case RAW: status = image_write_raw(o, &r->frame, error); break;
-    case STATS: status = stats_write(o, s, &options->view, r, error); break;
-    default: status = registers_write(o, s, &options->view, error); break;
+    case PNG: return image_write_png(o, &d->result->frame, &style, error);
+    case RAW: return image_write_raw(o, &d->result->frame, error);
+    case STATS: return stats_write(o, d->scene, v, d->result, error);
+    default: return registers_write(o, d->scene, v, error);
     }
-    return status == HOST_OK ? output_close(o, error) : status;
-}
-
-/* No file takes its place before all are written. */
-static host_status write_outputs(const render_options *options, const scene *s, const result *r, host_error *error)
-{
-    output outputs[OUTPUTS] = {{0}};
-    host_status status = HOST_OK;
-    for (int i = 0; status == HOST_OK && i < OUTPUTS; i++)
-        if (options->path[i])
-            status = write_one(i, &outputs[i], options, s, r, error);
-    for (int i = 0; status == HOST_OK && i < OUTPUTS; i++)
-        status = output_commit(&outputs[i], error);
-    for (int i = 0; i < OUTPUTS; i++)
-        output_discard(&outputs[i]);
-    return status;
-}
-
-/* An integer with its thousands apart. */
-static void print_count(const char *name, uint64_t value, const char *after)
-{
-    char digits[32], grouped[48];
-    int n = snprintf(digits, sizeof digits, "%llu", (unsigned long long)value), out = 0;
-    for (int i = 0; i < n; i++) {
-        if (i && (n - i) % 3 == 0)
-            grouped[out++] = ',';
-        grouped[out++] = digits[i];
-    }
-    grouped[out] = '\0';
-    printf("%-18s %18s%s\n", name, grouped, after);
 }
 
 static void print_cycles(const vodr_counters *c)
@@ -121,7 +82,7 @@ static void print_cycles(const vodr_counters *c)
     char each[48] = "", bottleneck[192];
     if (c->fragments)
         snprintf(each, sizeof each, "  (%.3f a fragment)", (double)c->cycles.total / (double)c->fragments);
-    print_count("cycles", c->cycles.total, each);
+    text_print_count("cycles", c->cycles.total, each);
     cycle_stats_bottleneck(&c->cycles, bottleneck, sizeof bottleneck);
     printf("bottleneck         %s\n", bottleneck);
 }
@@ -137,34 +98,22 @@ static void print_summary(const render_options *options, const scene *s, const r
     printf("window, function   %g:%g, %s\n", s->window_lo, s->window_hi, s->transfer.name);
     printf("frame              %dx%d pixels of %d slices, machine %s\n", s->view.width_px, s->view.height_px,
            s->view.slices, s->machine_name);
-    print_count("fragments", c->fragments, "");
-    print_count("hits", c->hits, rate);
-    print_count("misses", c->misses, "");
-    print_count("write-backs", c->writebacks, "");
-    print_count("frame buffer", c->fb_read_bytes, " bytes read");
-    print_count("", c->fb_write_bytes, " bytes written");
-    print_count("texture load", c->texture_load_bytes, " bytes");
-    print_count("bricks", c->bricks, "");
-    print_count("brick visits", c->brick_visits, "");
+    text_print_count("fragments", c->fragments, "");
+    text_print_count("hits", c->hits, rate);
+    text_print_count("misses", c->misses, "");
+    text_print_count("write-backs", c->writebacks, "");
+    text_print_count("frame buffer", c->fb_read_bytes, " bytes read");
+    text_print_count("", c->fb_write_bytes, " bytes written");
+    text_print_count("texture load", c->texture_load_bytes, " bytes");
+    text_print_count("bricks", c->bricks, "");
+    text_print_count("brick visits", c->brick_visits, "");
     if (options->view.cycles)
         print_cycles(c);
     printf("time               %.6f s, %.1f million fragments a second\n", r->wall_s, stats_fragments_per_s(r) / 1e6);
     printf("frame_sha256       %s\n", r->frame_sha256);
-    for (int i = 0; i < OUTPUTS; i++)
-        if (options->path[i])
-            printf("written            %s\n", options->path[i]);
 }
 
-/* The summary stays away from a standard output that carries one of the files. */
-static bool wants_summary(const render_options *options)
-{
-    for (int i = 0; i < OUTPUTS; i++)
-        if (options->path[i] && output_is_stdout(options->path[i]))
-            return false;
-    return true;
-}
-
-static host_status render(const char *path, const render_options *options, host_error *error)
+static host_status render(const char *path, render_options *options, host_error *error)
 {
     scene s;
     result r = {.repeat = 0};
@@ -175,17 +124,20 @@ static host_status render(const char *path, const render_options *options, host_
                         .simd = v->simd,
                         .cycles = v->cycles,
                         .repeat = options->repeat};
-    host_status status = check_outputs(path, options, error);
+    const output_set outputs = outputs_of(options);
+    host_status status = output_set_check(&outputs, v, path, error);
     if (status == HOST_OK)
         status = scene_open(path, &options->view, &s, error);
     if (status != HOST_OK)
         return status;
     status = draw(&s, &s.machine, &how, &r, error);
-    bool summary = wants_summary(options);
+    bool summary = !output_set_takes_stdout(&outputs);
     if (status == HOST_OK)
-        status = write_outputs(options, &s, &r, error);
-    if (status == HOST_OK && summary)
+        status = output_set_write(&outputs, write_one, &(drawn){options, &s, &r}, error);
+    if (status == HOST_OK && summary) {
         print_summary(options, &s, &r);
+        output_set_print(&outputs);
+    }
     vodr_frame_free(&r.frame);
     scene_close(&s);
     return status;

@@ -37,16 +37,10 @@ static host_status fill(scene *s, const char *path, const view_options *o, host_
     if (status != HOST_OK)
         return status;
     scene_window(o, &s->transfer, ct, s->volume.min, s->volume.max, &s->window_lo, &s->window_hi);
-    status = camera_view(&s->camera, &s->volume, &s->view, &s->depth_vox, error);
-    if (status == HOST_OK)
-        status = volume_quantise(&s->volume, s->window_lo, s->window_hi, s->machine.density_bits, &s->densities, error);
-    if (status != HOST_OK)
-        return status;
-    return scene_table(&s->machine, &s->transfer, s->window_lo, s->window_hi, s->depth_vox, &s->entries, &s->table,
-                       error);
+    return camera_view(&s->camera, &s->volume, &s->view, &s->depth_vox, error);
 }
 
-host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error)
+host_status scene_open_stored(const char *path, const view_options *options, scene *s, host_error *error)
 {
     *s = (scene){.machine_name = options->machine, .camera = options->camera};
     host_status status = fill(s, path, options, error);
@@ -58,6 +52,27 @@ host_status scene_open(const char *path, const view_options *options, scene *s, 
     s->camera.height_px = s->view.height_px;
     s->camera.slices = s->view.slices;
     return HOST_OK;
+}
+
+host_status scene_quantise(scene *s, host_error *error)
+{
+    host_status status =
+        volume_quantise(&s->volume, s->window_lo, s->window_hi, s->machine.density_bits, &s->densities, error);
+    if (status != HOST_OK)
+        return status;
+    return scene_table(&s->machine, &s->transfer, s->window_lo, s->window_hi, s->depth_vox, &s->entries, &s->table,
+                       error);
+}
+
+host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error)
+{
+    host_status status = scene_open_stored(path, options, s, error);
+    if (status != HOST_OK)
+        return status;
+    status = scene_quantise(s, error);
+    if (status != HOST_OK)
+        scene_close(s);
+    return status;
 }
 
 void scene_close(scene *s)

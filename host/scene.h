@@ -29,6 +29,12 @@ typedef struct scene {
 host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error);
 void scene_close(scene *s);
 
+/* The same but for densities and table: the volume keeps the voxels of its file. */
+host_status scene_open_stored(const char *path, const view_options *options, scene *s, host_error *error);
+
+/* Makes those of a scene opened by scene_open_stored(). */
+host_status scene_quantise(scene *s, host_error *error);
+
 /* The window: as given, else the transfer function's own for a CT in Hounsfield units, else the data's range. */
 void scene_window(const view_options *o, const transfer *t, bool ct, double min, double max, double *lo, double *hi);
 

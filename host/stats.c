@@ -16,7 +16,7 @@ double stats_fragments_per_s(const result *r)
     return r->wall_s > 0 ? (double)r->counters.fragments / r->wall_s : 0;
 }
 
-static json_t *view_object(const scene *s)
+json_t *stats_view(const scene *s)
 {
     const camera *c = &s->camera;
     return json_pack("{s:[f,f,f], s:s, s:o, s:f, s:i, s:i, s:i, s:f, s:o}", "angles_deg", c->azimuth_deg,
@@ -69,9 +69,9 @@ json_t *stats_counters(const vodr_counters *c)
 
 json_t *stats_json(const scene *s, const view_options *options, const result *r)
 {
-    json_t *root = json_pack("{s:s, s:s, s:o, s:o, s:o}", "schema", "vodr-stats-1", "version", VODR_VERSION, "machine",
-                             json_machine(s->machine_name, &s->machine), "volume", json_volume(s, options), "view",
-                             view_object(s));
+    json_t *root =
+        json_pack("{s:s, s:s, s:o, s:o, s:o}", "schema", "vodr-stats-1", "version", VODR_VERSION, "machine",
+                  json_machine(s->machine_name, &s->machine), "volume", json_volume(s, options), "view", stats_view(s));
     json_t *counters = stats_counters(&r->counters);
     const vodr_cycles *cycles = options->cycles ? &r->counters.cycles : NULL;
     char bottleneck[192];

@@ -14,6 +14,9 @@ double stats_hit_rate(const vodr_counters *c);
 /* Fragments a second; 0 when the time is too short to measure. */
 double stats_fragments_per_s(const result *r);
 
+/* The view as an object; NULL when memory is out. */
+json_t *stats_view(const scene *s);
+
 /* An object of the machine's counters; NULL when memory is out. */
 json_t *stats_counters(const vodr_counters *c);
 

@@ -104,6 +104,19 @@ static host_status read_stream(FILE *file, const char *path, const char *what, c
     return HOST_OK;
 }
 
+void text_print_count(const char *name, uint64_t value, const char *after)
+{
+    char digits[32], grouped[48];
+    int n = snprintf(digits, sizeof digits, "%llu", (unsigned long long)value), out = 0;
+    for (int i = 0; i < n; i++) {
+        if (i && (n - i) % 3 == 0)
+            grouped[out++] = ',';
+        grouped[out++] = digits[i];
+    }
+    grouped[out] = '\0';
+    printf("%-18s %18s%s\n", name, grouped, after);
+}
+
 host_status text_read(const char *path, const char *what, char **text, host_error *error)
 {
     struct stat info;

@@ -18,6 +18,9 @@ bool text_size(const char *text, int64_t hi, int32_t *a, int32_t *b);
 /* Replaces what is not printable ASCII, for text from files in sentences. */
 void text_make_printable(char *text);
 
+/* Prints a line of a summary: a name, an integer with its thousands apart, and what follows it. */
+void text_print_count(const char *name, uint64_t value, const char *after);
+
 /* Reads a text file of at most 1 MiB, without NUL bytes; free() the text. `what` names it in error sentences. */
 host_status text_read(const char *path, const char *what, char **text, host_error *error);
 

@@ -101,6 +101,20 @@ static uint16_t to_channel(double value, double full)
     return (uint16_t)floor(value * full + 0.5);
 }
 
+/* Entry i of last + 1; `largest` divides the opacity. */
+static void sample_at(const transfer *t, double lo, double hi, int i, int last, double depth, double largest,
+                      double rgba[4])
+{
+    transfer_point p = transfer_at(t, lo + (hi - lo) * i / last, lo, hi);
+    double a = p.a / largest;
+    if (depth != 1)
+        a = 1 - pow(1 - a, depth);
+    rgba[0] = p.r * a;
+    rgba[1] = p.g * a;
+    rgba[2] = p.b * a;
+    rgba[3] = a;
+}
+
 void transfer_table(const transfer *t, double lo, double hi, int density_bits, int tf_bits, double depth,
                     bool full_scale, vodr_rgba *entries)
 {
@@ -108,13 +122,18 @@ void transfer_table(const transfer *t, double lo, double hi, int density_bits, i
     const double full = tf_bits == 16 ? 65535 : 255;
     const double largest = full_scale && t->builtin ? largest_opacity(t) : 1;
     for (int i = 0; i <= last; i++) {
-        transfer_point p = transfer_at(t, lo + (hi - lo) * i / last, lo, hi);
-        double a = p.a / largest;
-        if (depth != 1)
-            a = 1 - pow(1 - a, depth);
-        entries[i] = (vodr_rgba){to_channel(p.r * a, full), to_channel(p.g * a, full), to_channel(p.b * a, full),
-                                 to_channel(a, full)};
+        double rgba[4];
+        sample_at(t, lo, hi, i, last, depth, largest, rgba);
+        entries[i] = (vodr_rgba){to_channel(rgba[0], full), to_channel(rgba[1], full), to_channel(rgba[2], full),
+                                 to_channel(rgba[3], full)};
     }
+}
+
+void transfer_sample(const transfer *t, double lo, double hi, int count, double depth, bool full_scale, double *rgba)
+{
+    const double largest = full_scale && t->builtin ? largest_opacity(t) : 1;
+    for (int i = 0; i < count; i++)
+        sample_at(t, lo, hi, i, count - 1, depth, largest, rgba + 4 * (size_t)i);
 }
 
 /* A colour map in JSON is an object or a list; no line of the text form begins like one. */

@@ -56,4 +56,8 @@ transfer_point transfer_at(const transfer *t, double value, double lo, double hi
 void transfer_table(const transfer *t, double lo, double hi, int density_bits, int tf_bits, double depth,
                     bool full_scale, vodr_rgba *entries);
 
+/* The same before rounding: `count` entries, at least 2, of r, g, b, a, premultiplied; entry i is the function at value
+ * lo + (hi - lo)*i/(count - 1). */
+void transfer_sample(const transfer *t, double lo, double hi, int count, double depth, bool full_scale, double *rgba);
+
 #endif

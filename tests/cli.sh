@@ -81,12 +81,12 @@ raw="v.raw --dims 16x8x8"
 
 # ---- help and version ----
 good "vodr --help" "$vodr" --help
-for command in render compare machine info sweep; do
+for command in render reference compare machine info sweep; do
     expect "vodr --help names $command" "^  $command " ../out-$$
 done
 good "vodr --version" "$vodr" --version
 expect "vodr --version" '^vodr [0-9]' ../out-$$
-for command in compare machine info sweep; do
+for command in reference compare machine info sweep; do
     good "vodr $command --help" "$vodr" $command --help
     expect "vodr $command --help has an example" '^Example' ../out-$$
 done
@@ -188,6 +188,59 @@ done
 rm -f ./*.stats missing
 good "machine list" "$vodr" machine list
 expect "machine list has paper-32" '^paper-32 ' ../out-$$
+
+# ---- reference ----
+# shellcheck disable=SC2086
+{
+    good "reference with nothing to write" "$vodr" reference $raw
+    expect "the summary counts 1024 samples of those slices" 'samples  *[0-9]' ../out-$$
+    for how in '' '--blend mip --set density_bits=8 --size 9x7' '--blend under --filter nearest --projection perspective:70' \
+        '--set fb_bits=16 --set tf_bits=16 --window 20:180 --slices 5 --tf bone'; do
+        good "render $how" "$vodr" render $raw --view -30,20 $how --raw m.rgba
+        good "reference --numbers fixed $how" "$vodr" reference $raw --view -30,20 $how --numbers fixed --raw n.rgba
+        same "draws the machine's bytes" m.rgba n.rgba
+    done
+    for method in slices raycast; do
+        good "reference --method $method, all outputs" "$vodr" reference $raw --method $method -o r.png --raw r.rgba \
+            --stats r.json --repeat 2 --accel none
+        expect "stats: schema" '"schema": "vodr-reference-stats-1"' r.json
+        expect "stats: samples" '"samples": 1024' r.json
+        expect "stats: method" "\"method\": \"$method\"" r.json
+        expect "stats: wall_s" '"wall_s": [0-9]' r.json
+        verdict "stats: frame_sha256 is of --raw" \
+            "$(grep -q "$(sha256sum r.rgba | cut -d' ' -f1)" r.json || echo "it is not")"
+        for how in '--accel block --block 2' '--accel best' '--threads 3' '--simd portable' '--accel none'; do
+            good "reference --method $method $how" "$vodr" reference $raw --method $method $how --raw t.rgba
+            same "draws the same bytes" r.rgba t.rgba
+        done
+    done
+    good "reference, double and Phong" "$vodr" reference $raw --method raycast --numbers double --step 0.5 \
+        --shading phong --termination 0.9 --raw t.rgba
+    good "reference, texture, mip" "$vodr" reference $raw --numbers texture --blend mip --raw t.rgba
+    rm -f m.rgba n.rgba r.png r.rgba r.json t.rgba
+    bad 2 "--device 'gpu': must be cpu or cuda" "$vodr" reference $raw -o no.png --device gpu
+    bad 2 "--method 'rays': must be slices or raycast" "$vodr" reference $raw -o no.png --method rays
+    bad 2 "--numbers 'half': must be fixed, float, double or texture" "$vodr" reference $raw -o no.png --numbers half
+    bad 2 "--accel 'hull': must be none, block or best" "$vodr" reference $raw -o no.png --accel hull
+    bad 2 "--shading 'flat': must be none or phong" "$vodr" reference $raw -o no.png --shading flat
+    bad 2 "--step '0': must be" "$vodr" reference $raw -o no.png --method raycast --step 0
+    bad 2 "--block '1': must be" "$vodr" reference $raw -o no.png --block 1
+    bad 2 "--termination '1.5': must be" "$vodr" reference $raw -o no.png --termination 1.5
+    bad 2 "--slices '0': must be" "$vodr" reference $raw -o no.png --slices 0
+    bad 2 "--method raycast has no --numbers fixed" "$vodr" reference $raw -o no.png --method raycast --numbers fixed
+    for how in '--accel block' '--shading phong' '--block 4' '--termination 0.5'; do
+        bad 2 "${how% *} does not go with" "$vodr" reference $raw -o no.png --numbers fixed $how
+    done
+    bad 2 "--step goes with --method raycast" "$vodr" reference $raw -o no.png --step 2
+    bad 2 "--numbers double is drawn on --device cpu only" "$vodr" reference $raw -o no.png --numbers double --device cuda
+    bad 2 "--shading phong does not go with blend=mip" "$vodr" reference $raw -o no.png --shading phong --blend mip
+    bad 2 "--cycles is of the machine" "$vodr" reference $raw -o no.png --cycles
+    bad 2 "--path is of the machine" "$vodr" reference $raw -o no.png --path blocks
+    bad 2 "both name 'no.png'" "$vodr" reference $raw -o no.png --raw no.png
+    bad 2 "none.nrrd" "$vodr" reference none.nrrd -o no.png
+    bad 3 "'none/x'" "$vodr" reference $raw --raw none/x
+    bad 3 "CUDA" env CUDA_VISIBLE_DEVICES= "$vodr" reference $raw -o no.png --device cuda
+}
 
 # ---- compare ----
 good "compare, equal" "$vodr" compare a.png a.png

@@ -86,6 +86,11 @@ offers 'render --tf=sk' skin-bone
 offers 'render --endian ' little big
 offers 'render --projection pers' perspective perspective:
 offers 'render --zoom ' ''
+offers 'reference --device ' cpu cuda
+offers 'reference --method ' slices raycast
+offers 'reference --numbers ' fixed float double texture
+offers 'reference --accel ' none block best
+offers 'reference --shading ' none phong
 offers 'sweep --plot-type ' line bar heat pareto
 offers 'sweep --list ' volume.nrrd
 offers 'sweep vol' volume.nrrd

@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "lib/ideal.h"
+#include "lib/phantom.h"
 #include "lib/unit.h"
-
-enum { PHANTOM_VOX = 72 };
 
 typedef struct pose {
     double azimuth_deg, elevation_deg;
@@ -16,51 +15,6 @@ typedef struct pose {
 } pose;
 
 static const pose poses[] = {{0, 0, false}, {30, 30, false}, {0, 0, true}, {30, 30, true}};
-
-/* From 0 to 1 as x goes from -width to width, smoothly. */
-static double rise(double x, double width)
-{
-    double t = fmin(fmax((x + width) / (2 * width), 0), 1);
-    return t * t * (3 - 2 * t);
-}
-
-/* Hounsfield units of an egg-shaped head: air, skin, skull, brain; x, y, z from -1 to 1. */
-static double head(double x, double y, double z)
-{
-    double depth =
-        (1 - sqrt(x * x / 0.64 + y * y / 0.81 + z * z / 0.72)) * 0.8 * PHANTOM_VOX / 2; /* voxels under the skin */
-    double bone = rise(depth - 4, 1.2) * (1 - rise(depth - 8, 1.2));
-    return -1000 + 1040 * rise(depth, 1.2) + 1160 * bone;
-}
-
-/* A tube wound round the y axis and a straight one beside it, filled with contrast agent, in soft tissue. */
-static double vessels(double x, double y, double z)
-{
-    double turn = 6 * y, dx = x - 0.55 * cos(turn), dz = z - 0.55 * sin(turn);
-    double helix = 0.09 - sqrt(dx * dx + dz * dz) / 1.6, straight = 0.12 - sqrt(x * x + z * z);
-    double inside = fmax(rise(helix * PHANTOM_VOX / 2, 1.5), rise(straight * PHANTOM_VOX / 2, 1.5));
-    return 30 + 420 * inside;
-}
-
-/* Fills *v as a reader of an int16 file would. */
-static void make_phantom(double (*hounsfield)(double, double, double), volume *v)
-{
-    enum { N = PHANTOM_VOX };
-    *v = unit_volume(N, N, N);
-    int16_t *voxel = malloc(sizeof *voxel * N * N * N);
-    assert_non_null(voxel);
-    v->voxels = voxel;
-    v->bytes = sizeof *voxel * N * N * N;
-    v->type = VOLUME_INT16;
-    v->slope = 1;
-    for (int z = 0; z < N; z++)
-        for (int y = 0; y < N; y++)
-            for (int x = 0; x < N; x++)
-                *voxel++ =
-                    (int16_t)lround(hounsfield((2 * x + 1.0) / N - 1, (2 * y + 1.0) / N - 1, (2 * z + 1.0) / N - 1));
-    v->min = -1000; /* a CT */
-    v->max = 1400;
-}
 
 /* The voxels' values, neither quantised nor clamped to the window. */
 static float *values_of(const volume *v)
@@ -84,9 +38,7 @@ typedef struct subject {
 
 static host_status open_phantom(const char *name, volume *v, host_error *error)
 {
-    (void)error;
-    make_phantom(strcmp(name, "head") == 0 ? head : vessels, v);
-    return HOST_OK;
+    return phantom_open(name, v) ? HOST_OK : host_fail(error, HOST_ENVIRONMENT, "no memory");
 }
 
 static void directory_of_volumes(char *path, size_t size, const char *name)

@@ -1,0 +1,192 @@
+/* reference.c - `vodr reference`: a volume through the reference renderer, in the machine's arithmetic or in floating
+ * point, on the CPU or on a CUDA card. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "image.h"
+#include "output_set.h"
+#include "progress.h"
+#include "reference_options.h"
+#include "reference_stats.h"
+#include "text.h"
+
+enum { PNG, RAW, STATS, OUTPUTS };
+
+static const char *const output_option[OUTPUTS] = {"output", "raw", "stats"};
+
+typedef struct command_options {
+    view_options view;
+    reference_wish wish;
+    const char *path[OUTPUTS]; /* NULL: not asked for */
+    int repeat;
+} command_options;
+
+static output_set outputs_of(command_options *options)
+{
+    return (output_set){output_option, OUTPUTS, options->path};
+}
+
+static host_status set_output(void *target, const option *o, const char *value, host_error *error)
+{
+    (void)error;
+    const output_set set = outputs_of(target);
+    output_set_path(&set, o->name, value);
+    return HOST_OK;
+}
+
+static host_status set_repeat(void *target, const option *o, const char *value, host_error *error)
+{
+    int64_t repeat;
+    if (!text_integer(value, 1, 1000, &repeat))
+        return option_refuse(o, value, "an integer from 1 to 1000", error);
+    ((command_options *)target)->repeat = (int)repeat;
+    return HOST_OK;
+}
+
+static const option rows[] = {
+    {"output", 'o', "OUT.png", false, set_output, "the picture, 8 or 16 bits a channel as fb_bits says"},
+    {"raw", 0, "OUT.rgba", false, set_output,
+     "the frame: rows top to bottom, premultiplied RGBA, 8 bits,\n"
+     "or 16 bits little endian"},
+    {"stats", 0, "OUT.json", false, set_output, "samples, times, the frame's hash"},
+    {"repeat", 0, "N", false, set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
+};
+static const option_table table = {"Output (none is required):", rows, sizeof rows / sizeof *rows};
+
+/* ---- drawing ---- */
+
+static void add_stats(reference_result *r, const reference_stats *s)
+{
+    r->samples = s->samples;
+    r->preprocess_ms += s->preprocess_ms;
+}
+
+static host_status draw_all(const reference_scene *drawing, reference_result *r, double *times_s, double *kernel_ms,
+                            host_error *error)
+{
+    host_status status = HOST_OK;
+    for (int i = 0; status == HOST_OK && i < r->repeat; i++) {
+        reference_stats stats;
+        vodr_frame_free(&r->frame);
+        double begin_s = progress_now_s();
+        status = reference_scene_draw(drawing, &r->frame, &stats, error);
+        times_s[i] = progress_now_s() - begin_s - stats.preprocess_ms * 1e-3;
+        kernel_ms[i] = stats.draw_ms;
+        add_stats(r, &stats);
+    }
+    return status;
+}
+
+static host_status draw_scene(scene *s, const command_options *options, reference_result *r, host_error *error)
+{
+    reference_scene drawing;
+    const view_options *v = &options->view;
+    host_status status = reference_scene_open(s, &options->wish.choice, v->threads, v->simd, &drawing, error);
+    if (status != HOST_OK)
+        return status;
+    snprintf(r->device, sizeof r->device, "%s", reference_device_name(drawing.renderer));
+    double *times = malloc(2 * (size_t)r->repeat * sizeof *times);
+    if (times)
+        status = draw_all(&drawing, r, times, times + r->repeat, error);
+    else
+        status = host_fail(error, HOST_ENVIRONMENT, "no memory");
+    if (status == HOST_OK) {
+        r->wall_s = draw_median(times, r->repeat);
+        r->kernel_ms = draw_median(times + r->repeat, r->repeat);
+    }
+    free(times);
+    reference_scene_close(&drawing);
+    return status == HOST_OK ? digest_frame(&r->frame, r->frame_sha256, error) : status;
+}
+
+/* ---- output ---- */
+
+typedef struct drawn {
+    const command_options *options;
+    const scene *scene;
+    const reference_result *result;
+} drawn;
+
+static host_status write_one(void *context, int i, output *o, host_error *error)
+{
+    const drawn *d = context;
+    const view_options *v = &d->options->view;
+    image_style style = {.alpha = v->alpha};
+    memcpy(style.background, v->background, sizeof style.background);
+    switch (i) {
+    case PNG: return image_write_png(o, &d->result->frame, &style, error);
+    case RAW: return image_write_raw(o, &d->result->frame, error);
+    default: return reference_stats_write(o, d->scene, v, &d->options->wish.choice, d->result, error);
+    }
+}
+
+static void print_summary(const command_options *options, const scene *s, const reference_result *r)
+{
+    const reference_choice *c = &options->wish.choice;
+    printf("volume             %s, %dx%dx%d %s\n", s->volume.path, s->volume.dims_vox[0], s->volume.dims_vox[1],
+           s->volume.dims_vox[2], volume_type_name(s->volume.type));
+    printf("window, function   %g:%g, %s\n", s->window_lo, s->window_hi, s->transfer.name);
+    printf("frame              %dx%d pixels, ", s->view.width_px, s->view.height_px);
+    if (c->method == REFERENCE_RAYCAST)
+        printf("rays of a sample every %g voxels\n", c->step_vox);
+    else
+        printf("%d slices\n", s->view.slices);
+    printf("numbers            %s%s%s\n", reference_numbers_name(c),
+           c->fixed ? ", machine " : ", empty space: ", c->fixed ? s->machine_name : reference_accel_name(c));
+    printf("device             %s\n", r->device);
+    text_print_count("samples", r->samples, "");
+    printf("time               %.6f s, %.1f million samples a second\n", r->wall_s, reference_samples_per_s(r) / 1e6);
+    printf("frame_sha256       %s\n", r->frame_sha256);
+}
+
+static host_status draw_and_write(const char *path, command_options *options, host_error *error)
+{
+    scene s;
+    reference_result r = {.repeat = options->repeat};
+    const output_set outputs = outputs_of(options);
+    host_status status = reference_wish_settle(&options->wish, &options->view, error);
+    if (status == HOST_OK)
+        status = output_set_check(&outputs, &options->view, path, error);
+    if (status == HOST_OK)
+        status = scene_open_stored(path, &options->view, &s, error);
+    if (status != HOST_OK)
+        return status;
+    status = draw_scene(&s, options, &r, error);
+    bool summary = !output_set_takes_stdout(&outputs);
+    if (status == HOST_OK)
+        status = output_set_write(&outputs, write_one, &(drawn){options, &s, &r}, error);
+    if (status == HOST_OK && summary) {
+        print_summary(options, &s, &r);
+        output_set_print(&outputs);
+    }
+    vodr_frame_free(&r.frame);
+    scene_close(&s);
+    return status;
+}
+
+static host_status run(int argc, char **argv, host_error *error)
+{
+    command_options options = {.view = view_options_default(), .wish = reference_wish_default(), .repeat = 1};
+    void *const targets[] = {&options,      &options.wish,        &options.view,
+                             &options.view, &options.view.volume, &options.view};
+    const char *operands[OPTION_OPERANDS];
+    bool help;
+    host_status status = options_parse(&command_reference, argc, argv, targets, operands, &help, error);
+    if (status == HOST_OK && !help)
+        status = draw_and_write(operands[0], &options, error);
+    view_options_free(&options.view);
+    return status;
+}
+
+const command command_reference = {
+    .name = "reference",
+    .operands = {"VOLUME"},
+    .required = 1,
+    .summary = "draw the same frame with the reference renderer, in float or as the machine",
+    .example = "  vodr reference head.nrrd -o head.png --tf skin-bone --view -30,20 --size 512x512 --method raycast\n"
+               "  vodr reference head.nrrd --numbers fixed --raw head.rgba    # equal to the byte to vodr render's",
+    .tables = {&table, &option_reference, &option_view, &option_machine, &option_volume, &option_picture},
+    .run = run,
+};

@@ -1,0 +1,179 @@
+/* reference_scene.c - a scene on the reference renderer: its voxels, transfer function and rays as reference/ takes
+ * them. */
+#include "reference_scene.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fine enough for the 4,096 entries of a machine's table of 12-bit densities to be among the points sampled. */
+enum { TABLE_COLUMNS = 4096 };
+
+/* Stored voxels as reference/ reads them; a value is stored*scale + offset. */
+typedef struct stored {
+    reference_volume volume;
+    double scale, offset;
+} stored;
+
+host_status reference_scene_status(reference_status status)
+{
+    return status == REFERENCE_OK ? HOST_OK : status == REFERENCE_INVALID ? HOST_BAD_INPUT : HOST_ENVIRONMENT;
+}
+
+/* ---- voxels ---- */
+
+/* Integers: counted from the least value on, so that they are unsigned, rise with their values - the greatest is that
+ * of a maximum - and lose little where a float places them in a window. */
+static void make_rising(volume *v, stored *s)
+{
+    const int64_t base = llround((v->min - v->inter) / v->slope);
+    const int sign = v->slope < 0 ? -1 : 1;
+    const bool narrow = volume_type_bytes(v->type) == 1;
+    uint8_t *voxels_8 = v->voxels;
+    uint16_t *voxels_16 = v->voxels;
+    s->volume.type = narrow ? REFERENCE_UINT8 : REFERENCE_UINT16;
+    s->scale = fabs(v->slope);
+    s->offset = v->inter + v->slope * (double)base;
+    if (base == 0 && sign > 0)
+        return;
+    for (size_t i = 0, n = volume_count(v); i < n; i++) /* modulo 2^8 or 2^16, signed or not */
+        if (narrow)
+            voxels_8[i] = (uint8_t)(sign * (voxels_8[i] - base));
+        else
+            voxels_16[i] = (uint16_t)(sign * (voxels_16[i] - base));
+}
+
+/* A voxel and its float are as wide. */
+static void make_floats(volume *v)
+{
+    unsigned char *place = v->voxels;
+    for (size_t i = 0, n = volume_count(v); i < n; i++, place += sizeof(float)) {
+        float value = (float)fmin(fmax(volume_value(v, i), -FLT_MAX), FLT_MAX);
+        memcpy(place, &value, sizeof value);
+    }
+}
+
+static stored store(volume *v)
+{
+    stored s = {.volume = {.type = REFERENCE_FLOAT32, .voxels = v->voxels}, .scale = 1};
+    memcpy(s.volume.dims_vox, v->dims_vox, sizeof s.volume.dims_vox);
+    if (volume_type_bytes(v->type) < sizeof(float))
+        make_rising(v, &s);
+    else
+        make_floats(v);
+    v->quantised = true;
+    return s;
+}
+
+/* ---- the job ---- */
+
+static reference_camera camera_of(const scene *s, const reference_choice *c)
+{
+    double spacing_vox[3], finest = fmin(s->volume.spacing[0], fmin(s->volume.spacing[1], s->volume.spacing[2]));
+    for (int a = 0; a < 3; a++)
+        spacing_vox[a] = s->volume.spacing[a] / finest;
+    if (c->method == REFERENCE_RAYCAST)
+        return reference_camera_rays(&s->view, spacing_vox, c->step_vox);
+    reference_camera slices = reference_camera_slices(&s->view);
+    memcpy(slices.spacing_vox, spacing_vox, sizeof slices.spacing_vox);
+    return slices;
+}
+
+static host_status fill_job(reference_scene *r, const scene *s, const reference_choice *c, const stored *v,
+                            host_error *error)
+{
+    const bool mip = s->machine.blend == VODR_BLEND_MIP;
+    const double width = s->window_hi - s->window_lo;
+    const double depth_vox = c->method == REFERENCE_RAYCAST ? c->step_vox : s->depth_vox;
+    if (!isfinite(width))
+        return host_fail(error, HOST_BAD_INPUT, "window %g:%g: must be finite", s->window_lo, s->window_hi);
+    r->table = malloc(4 * TABLE_COLUMNS * sizeof *r->table);
+    if (!r->table)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for the transfer-function table");
+    transfer_sample(&s->transfer, s->window_lo, s->window_hi, TABLE_COLUMNS, mip ? 1 : depth_vox, mip, r->table);
+    r->job = (reference_march_job){
+        .camera = camera_of(s, c),
+        .numbers = c->numbers,
+        .blend = mip ? REFERENCE_MIP : REFERENCE_OVER,
+        .filter = s->machine.filter == VODR_FILTER_NEAREST ? REFERENCE_NEAREST : REFERENCE_LINEAR,
+        .shading = c->shading,
+        .accel = c->accel,
+        .block_vox = c->block_vox,
+        .termination = c->termination < 1 ? c->termination : 2,
+        .table = {.columns = TABLE_COLUMNS, .rows = 1, .rgba = r->table},
+        .window_scale = width > 0 ? v->scale / width : 0,
+        .window_offset = width > 0 ? (v->offset - s->window_lo) / width : 0,
+    };
+    return HOST_OK;
+}
+
+static host_status open_fixed(scene *s, reference_volume *v, host_error *error)
+{
+    host_status status = scene_quantise(s, error);
+    *v = (reference_volume){.type = s->densities.voxel_bytes == 1 ? REFERENCE_UINT8 : REFERENCE_UINT16,
+                            .voxels = s->densities.voxels};
+    memcpy(v->dims_vox, s->densities.dims_vox, sizeof v->dims_vox);
+    return status;
+}
+
+host_status reference_scene_open(scene *s, const reference_choice *choice, int32_t threads, vodr_simd simd,
+                                 reference_scene *r, host_error *error)
+{
+    *r = (reference_scene){.scene = s, .fixed = choice->fixed};
+    const reference_options options = {choice->device, threads, simd};
+    stored v = {0};
+    vodr_error reason;
+    host_status status;
+    if (choice->fixed) {
+        status = open_fixed(s, &v.volume, error);
+    } else {
+        v = store(&s->volume);
+        status = fill_job(r, s, choice, &v, error);
+    }
+    if (status == HOST_OK) {
+        status = reference_scene_status(reference_open(&options, &v.volume, &r->renderer, &reason));
+        if (status != HOST_OK)
+            host_fail(error, status, "%s", reason.text);
+    }
+    if (status != HOST_OK)
+        reference_scene_close(r);
+    return status;
+}
+
+void reference_scene_close(reference_scene *r)
+{
+    reference_close(r->renderer);
+    free(r->table);
+    *r = (reference_scene){0};
+}
+
+/* ---- a frame ---- */
+
+static reference_status draw_march(const reference_scene *r, vodr_frame *frame, reference_stats *stats,
+                                   vodr_error *reason)
+{
+    const reference_camera *c = &r->job.camera;
+    double *rgba = malloc(4 * (size_t)c->width_px * (size_t)c->height_px * sizeof *rgba);
+    if (!rgba) {
+        strcpy(reason->text, "no memory for the frame");
+        return REFERENCE_NO_MEMORY;
+    }
+    reference_status status = reference_march(r->renderer, &r->job, rgba, stats, reason);
+    if (status == REFERENCE_OK)
+        status = reference_quantise(c, rgba, r->scene->machine.fb_bits, frame, reason);
+    free(rgba);
+    return status;
+}
+
+host_status reference_scene_draw(const reference_scene *r, vodr_frame *frame, reference_stats *stats, host_error *error)
+{
+    const scene *s = r->scene;
+    vodr_error reason;
+    reference_status status = r->fixed ? reference_fixed(r->renderer, &s->machine, s->densities.map, &s->table,
+                                                         &s->view, frame, stats, &reason)
+                                       : draw_march(r, frame, stats, &reason);
+    if (status == REFERENCE_OK)
+        return HOST_OK;
+    return host_fail(error, reference_scene_status(status), "%s", reason.text);
+}

@@ -1,0 +1,47 @@
+/* reference_scene.h - a scene on the reference renderer: its voxels, transfer function and rays as reference/ takes
+ * them. */
+#ifndef HOST_REFERENCE_SCENE_H
+#define HOST_REFERENCE_SCENE_H
+
+#include "reference.h"
+#include "scene.h"
+
+typedef enum reference_method { REFERENCE_SLICES, REFERENCE_RAYCAST } reference_method;
+
+/* What `vodr reference` may be asked for beyond the view. */
+typedef struct reference_choice {
+    reference_device device;
+    reference_method method;
+    bool fixed;                /* the machine's own arithmetic; else: */
+    reference_numbers numbers; /* and all that follows */
+    reference_accel accel;
+    reference_shading shading;
+    double step_vox; /* raycast: finest voxels between samples */
+    int32_t block_vox;
+    double termination; /* a ray ends at this opacity; 1: never */
+} reference_choice;
+
+typedef struct reference_scene {
+    const scene *scene;
+    bool fixed;
+    reference *renderer;
+    reference_march_job job;
+    double *table; /* of the job, owned */
+} reference_scene;
+
+/* Puts the volume of `s`, opened by scene_open_stored(), on the device; the voxels become densities (fixed), or are
+ * brought into a form that floating point reads: integers counted from the least, those of 32 bits rounded to float32,
+ * what is not finite replaced by the minimum. To be closed on success, before the scene is; callable once a
+ * scene. HOST_ENVIRONMENT where there is no device, or no room on it. */
+host_status reference_scene_open(scene *s, const reference_choice *choice, int32_t threads, vodr_simd simd,
+                                 reference_scene *r, host_error *error);
+void reference_scene_close(reference_scene *r);
+
+/* Draws a frame of the machine's fb_bits, to be freed by vodr_frame_free(). */
+host_status reference_scene_draw(const reference_scene *r, vodr_frame *frame, reference_stats *stats,
+                                 host_error *error);
+
+/* What a failure of reference/ is as an exit code. */
+host_status reference_scene_status(reference_status status);
+
+#endif

@@ -1,0 +1,10 @@
+/* cpu_avx512.c - the marching kernels in float with AVX-512 instructions, with which make compiles this file alone:
+ * vectors are cut to the file's instructions before functions are inlined, so a function's own target comes too late.
+ */
+#if defined(__x86_64__)
+#define REAL float
+#define LANES_OF_FLOAT
+#include "cpu_march_kernels.h"
+
+DEFINE_MARCH(cpu_kernels_avx512, avx512, true, KERNEL_CELLS);
+#endif

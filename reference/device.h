@@ -1,0 +1,45 @@
+/* device.h - private to reference/: what a device does. device_cpu.c and device_cuda.cu each fill one table. */
+#ifndef REFERENCE_DEVICE_H
+#define REFERENCE_DEVICE_H
+
+#include "kernel_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { DEVICE_NAME_CHARS = 160 };
+
+/* A frame to march: every pointer lies in the host's memory. */
+typedef struct device_march {
+    kernel_frame frame;
+    reference_numbers numbers;
+    kernel_mode mode;
+} device_march;
+
+typedef struct device_ops {
+    /* Puts the volume on the device; *state is closed by close(). name receives what the device is. */
+    reference_status (*open)(const reference_options *options, const reference_volume *volume, void **state,
+                             char name[DEVICE_NAME_CHARS], vodr_error *error);
+    void (*close)(void *state);
+    /* Draws all pixels. samples and draw_ms of *stats are set. */
+    reference_status (*fixed)(void *state, const kernel_fixed *f, vodr_rgba *pixels, reference_stats *stats,
+                              vodr_error *error);
+    reference_status (*march)(void *state, const device_march *m, double *rgba, reference_stats *stats,
+                              vodr_error *error);
+} device_ops;
+
+extern const device_ops device_cpu;
+
+/* NULL in a build without CUDA. */
+const device_ops *device_cuda(void);
+
+/* Writes the sentence and returns the status. */
+reference_status reference_fail(vodr_error *error, reference_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,505 @@
+/* device_cuda.cu - a CUDA card as a device: the volume in its memory, a thread a pixel. */
+#include <cuda_runtime.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REAL float
+#include "device.h"
+#include "kernel_fixed.h"
+#include "kernel_march.h"
+#include "kernel_ray.h"
+
+enum { BLOCK_W = 16, BLOCK_H = 8, COPIES_BYTES = 34 << 10 };
+
+typedef struct cuda_state {
+    reference_volume volume; /* voxels in the host's memory */
+    void *linear;            /* the voxels, as they are; NULL until a frame needs them */
+    void *cells;             /* the same packed (lanes_cuda.h) */
+    cudaArray_t array;       /* the same for the texture unit */
+    cudaTextureObject_t texture;
+    cudaEvent_t begin, end;
+} cuda_state;
+
+/* Memory of one frame, freed together. */
+enum { PIECES = 8 };
+typedef struct frame_memory {
+    void *piece[PIECES];
+    int count;
+} frame_memory;
+
+static const size_t voxel_bytes[] = {1, 2, 4};
+
+static size_t volume_bytes(const reference_volume *v)
+{
+    return (size_t)v->dims_vox[0] * (size_t)v->dims_vox[1] * (size_t)v->dims_vox[2] * voxel_bytes[v->type];
+}
+
+/* Whether a call went well; the sentence says which did not. */
+static reference_status check(cudaError_t code, const char *what, vodr_error *error)
+{
+    if (code == cudaSuccess)
+        return REFERENCE_OK;
+    reference_status status = code == cudaErrorMemoryAllocation ? REFERENCE_NO_MEMORY : REFERENCE_NO_DEVICE;
+    return reference_fail(error, status, "CUDA: %s: %s", what, cudaGetErrorString(code));
+}
+
+/* Leaves the function that it stands in when a call fails. */
+#define TRY(call)                                                                                                      \
+    do {                                                                                                               \
+        reference_status try_status = check(call, #call, error);                                                       \
+        if (try_status != REFERENCE_OK)                                                                                \
+            return try_status;                                                                                         \
+    } while (0)
+
+/* Refuses what the card has no room for, before anything is allocated. */
+static reference_status check_room(size_t bytes, const char *what, vodr_error *error)
+{
+    size_t room, all;
+    TRY(cudaMemGetInfo(&room, &all));
+    if (bytes <= room)
+        return REFERENCE_OK;
+    return reference_fail(error, REFERENCE_NO_MEMORY, "%s needs %zu MiB on the card, which has %zu of its %zu MiB free",
+                          what, (bytes >> 20) + 1, room >> 20, all >> 20);
+}
+
+static void cuda_close(void *state)
+{
+    cuda_state *s = (cuda_state *)state;
+    if (s->texture)
+        cudaDestroyTextureObject(s->texture);
+    cudaFreeArray(s->array);
+    cudaFree(s->linear);
+    cudaFree(s->cells);
+    if (s->begin)
+        cudaEventDestroy(s->begin);
+    if (s->end)
+        cudaEventDestroy(s->end);
+    free(s);
+}
+
+static reference_status open_device(cuda_state *s, char name[DEVICE_NAME_CHARS], vodr_error *error)
+{
+    int count = 0;
+    cudaDeviceProp properties;
+    if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0)
+        return reference_fail(error, REFERENCE_NO_DEVICE, "there is no CUDA device (--device cpu needs none)");
+    TRY(cudaGetDeviceProperties(&properties, 0));
+    snprintf(name, DEVICE_NAME_CHARS, "%.150s", properties.name);
+    TRY(cudaEventCreate(&s->begin));
+    TRY(cudaEventCreate(&s->end));
+    return check_room(volume_bytes(&s->volume), "the volume", error);
+}
+
+static reference_status cuda_open(const reference_options *options, const reference_volume *volume, void **state,
+                                  char name[DEVICE_NAME_CHARS], vodr_error *error)
+{
+    (void)options;
+    cuda_state *s = (cuda_state *)calloc(1, sizeof *s);
+    if (!s)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the reference renderer");
+    s->volume = *volume;
+    reference_status status = open_device(s, name, error);
+    if (status == REFERENCE_OK)
+        *state = s;
+    else
+        cuda_close(s);
+    return status;
+}
+
+static reference_status need_linear(cuda_state *s, vodr_error *error)
+{
+    if (s->linear)
+        return REFERENCE_OK;
+    size_t bytes = volume_bytes(&s->volume);
+    reference_status status = check_room(bytes, "the volume", error);
+    if (status != REFERENCE_OK)
+        return status;
+    TRY(cudaMalloc(&s->linear, bytes));
+    TRY(cudaMemcpy(s->linear, s->volume.voxels, bytes, cudaMemcpyHostToDevice));
+    return REFERENCE_OK;
+}
+
+static reference_status need_texture(cuda_state *s, vodr_error *error)
+{
+    if (s->texture)
+        return REFERENCE_OK;
+    const reference_volume *v = &s->volume;
+    const int bits = 8 * (int)voxel_bytes[v->type];
+    const bool is_float = v->type == REFERENCE_FLOAT32;
+    reference_status status = check_room(volume_bytes(v), "the volume as a texture", error);
+    if (status != REFERENCE_OK)
+        return status;
+    cudaChannelFormatDesc format =
+        cudaCreateChannelDesc(bits, 0, 0, 0, is_float ? cudaChannelFormatKindFloat : cudaChannelFormatKindUnsigned);
+    cudaExtent extent = make_cudaExtent(v->dims_vox[0], v->dims_vox[1], v->dims_vox[2]);
+    if (!s->array)
+        TRY(cudaMalloc3DArray(&s->array, &format, extent));
+    cudaMemcpy3DParms copy = {};
+    copy.srcPtr =
+        make_cudaPitchedPtr((void *)v->voxels, v->dims_vox[0] * voxel_bytes[v->type], v->dims_vox[0], v->dims_vox[1]);
+    copy.dstArray = s->array;
+    copy.extent = extent;
+    copy.kind = cudaMemcpyHostToDevice;
+    TRY(cudaMemcpy3D(&copy));
+    cudaResourceDesc resource = {};
+    resource.resType = cudaResourceTypeArray;
+    resource.res.array.array = s->array;
+    cudaTextureDesc texture = {};
+    for (int a = 0; a < 3; a++)
+        texture.addressMode[a] = cudaAddressModeClamp;
+    texture.filterMode = cudaFilterModeLinear;
+    texture.readMode = is_float ? cudaReadModeElementType : cudaReadModeNormalizedFloat;
+    TRY(cudaCreateTextureObject(&s->texture, &resource, &texture, NULL));
+    return REFERENCE_OK;
+}
+
+/* A piece of device memory for the frame, filled from `data` where that is not NULL. */
+static reference_status take(frame_memory *m, size_t bytes, const void *data, void **piece, vodr_error *error)
+{
+    TRY(cudaMalloc(piece, bytes ? bytes : 1));
+    m->piece[m->count++] = *piece;
+    if (data)
+        TRY(cudaMemcpy(*piece, data, bytes, cudaMemcpyHostToDevice));
+    return REFERENCE_OK;
+}
+
+static void release(frame_memory *m)
+{
+    while (m->count > 0)
+        cudaFree(m->piece[--m->count]);
+}
+
+#define TRY_STATUS(call)                                                                                               \
+    do {                                                                                                               \
+        reference_status try_status = call;                                                                            \
+        if (try_status != REFERENCE_OK)                                                                                \
+            return try_status;                                                                                         \
+    } while (0)
+
+static dim3 grid_of(int32_t width_px, int32_t height_px)
+{
+    return dim3((unsigned)(width_px + BLOCK_W - 1) / BLOCK_W, (unsigned)(height_px + BLOCK_H - 1) / BLOCK_H);
+}
+
+/* Waits for the kernel and adds up the samples of its pixels. */
+static reference_status finish(cuda_state *s, const uint32_t *counts, size_t pixels, reference_stats *stats,
+                               vodr_error *error)
+{
+    float ms;
+    TRY(cudaGetLastError());
+    TRY(cudaEventRecord(s->end));
+    TRY(cudaEventSynchronize(s->end));
+    TRY(cudaEventElapsedTime(&ms, s->begin, s->end));
+    stats->draw_ms = ms;
+    uint32_t *host = (uint32_t *)malloc(pixels * sizeof *host);
+    if (!host)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the samples of %zu pixels", pixels);
+    reference_status status =
+        check(cudaMemcpy(host, counts, pixels * sizeof *host, cudaMemcpyDeviceToHost), "cudaMemcpy of samples", error);
+    for (size_t i = 0; status == REFERENCE_OK && i < pixels; i++)
+        stats->samples += host[i];
+    free(host);
+    return status;
+}
+
+/* ---- the machine's arithmetic ---- */
+
+static __global__ void fixed_kernel(kernel_fixed f, vodr_rgba *pixels, uint32_t *counts)
+{
+    int32_t x = blockIdx.x * BLOCK_W + threadIdx.x, y = blockIdx.y * BLOCK_H + threadIdx.y;
+    if (x >= f.view.width_px || y >= f.view.height_px)
+        return;
+    uint32_t fragments = 0;
+    size_t i = (size_t)y * f.view.width_px + x;
+    pixels[i] = fixed_pixel(&f, x, y, &fragments);
+    counts[i] = fragments;
+}
+
+static reference_status draw_fixed(cuda_state *s, frame_memory *m, kernel_fixed f, vodr_rgba *pixels,
+                                   reference_stats *stats, vodr_error *error)
+{
+    void *map, *table, *out, *counts;
+    size_t count = (size_t)f.view.width_px * (size_t)f.view.height_px;
+    TRY_STATUS(need_linear(s, error));
+    TRY_STATUS(check_room(count * (sizeof *pixels + sizeof(uint32_t)), "the frame", error));
+    TRY_STATUS(take(m, 256 * sizeof *f.map, f.map, &map, error));
+    TRY_STATUS(take(m, sizeof *f.table << f.density_bits, f.table, &table, error));
+    TRY_STATUS(take(m, count * sizeof *pixels, NULL, &out, error));
+    TRY_STATUS(take(m, count * sizeof(uint32_t), NULL, &counts, error));
+    f.voxels = s->linear;
+    f.map = (const uint16_t *)map;
+    f.table = (const vodr_rgba *)table;
+    TRY(cudaEventRecord(s->begin));
+    fixed_kernel<<<grid_of(f.view.width_px, f.view.height_px), dim3(BLOCK_W, BLOCK_H)>>>(f, (vodr_rgba *)out,
+                                                                                         (uint32_t *)counts);
+    TRY_STATUS(finish(s, (const uint32_t *)counts, count, stats, error));
+    TRY(cudaMemcpy(pixels, out, count * sizeof *pixels, cudaMemcpyDeviceToHost));
+    return REFERENCE_OK;
+}
+
+static reference_status cuda_fixed(void *state, const kernel_fixed *f, vodr_rgba *pixels, reference_stats *stats,
+                                   vodr_error *error)
+{
+    frame_memory m = {};
+    reference_status status = draw_fixed((cuda_state *)state, &m, *f, pixels, stats, error);
+    release(&m);
+    return status;
+}
+
+/* ---- floating point ---- */
+
+/* A cell of 8-bit or 16-bit voxels is eight of them. */
+template <typename voxel, typename word>
+static __global__ void pack_cells(const voxel *voxels, int3 size, word *cells, unsigned count)
+{
+    unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= count)
+        return;
+    const int row = size.x + 1, layer = row * (size.y + 1);
+    int z = i / layer, y = i % layer / row, x = i % layer % row;
+    union {
+        voxel corner[8];
+        word whole_cell;
+    } cell;
+    for (int n = 0; n < 8; n++) {
+        int nx = min(max(x - 1 + (n & 1), 0), size.x - 1), ny = min(max(y - 1 + (n >> 1 & 1), 0), size.y - 1);
+        int nz = min(max(z - 1 + (n >> 2), 0), size.z - 1);
+        cell.corner[n] = voxels[((size_t)nz * size.y + ny) * size.x + nx];
+    }
+    cells[i] = cell.whole_cell;
+}
+
+/* Packs the volume's cells once; without room for them, or with voxels that cannot be packed, there are none. */
+static reference_status want_cells(cuda_state *s, reference_stats *stats, vodr_error *error)
+{
+    const reference_volume *v = &s->volume;
+    const int3 size = make_int3(v->dims_vox[0], v->dims_vox[1], v->dims_vox[2]);
+    size_t room, all, count = (size_t)(size.x + 1) * (size_t)(size.y + 1) * (size_t)(size.z + 1);
+    size_t bytes = 8 * voxel_bytes[v->type] * count;
+    float ms;
+    TRY(cudaMemGetInfo(&room, &all));
+    if (s->cells || v->type == REFERENCE_FLOAT32 || count > INT32_MAX || bytes > room / 10 * 9)
+        return REFERENCE_OK;
+    TRY(cudaMalloc(&s->cells, bytes));
+    TRY(cudaEventRecord(s->begin));
+    const unsigned blocks = (unsigned)((count + 255) / 256);
+    if (v->type == REFERENCE_UINT8)
+        pack_cells<<<blocks, 256>>>((const uint8_t *)s->linear, size, (uint2 *)s->cells, (unsigned)count);
+    else
+        pack_cells<<<blocks, 256>>>((const uint16_t *)s->linear, size, (uint4 *)s->cells, (unsigned)count);
+    TRY(cudaGetLastError());
+    TRY(cudaEventRecord(s->end));
+    TRY(cudaEventSynchronize(s->end));
+    TRY(cudaEventElapsedTime(&ms, s->begin, s->end));
+    stats->preprocess_ms += ms;
+    return REFERENCE_OK;
+}
+
+/* How a frame's pixels are dealt out. A block of threads is two warps wide, four high. */
+typedef struct march_launch {
+    int32_t warp_log2;   /* of pixels that a warp is wide */
+    int32_t copies_log2; /* of copies of a table's entry in shared memory: neighbours then read side by side */
+} march_launch;
+
+/* ANY_TYPE: the voxels' type is asked at each read. */
+enum { BLOCK_THREADS = 256, ANY_TYPE = -1 };
+
+/* Puts a table of one row into shared memory, as lookup says. */
+static __device__ __forceinline__ lookup share_table(const kernel_table &t, int32_t copies_log2, float4 *shared)
+{
+    const float4 *rgba = (const float4 *)t.rgba;
+    for (int i = threadIdx.x; i < (t.columns + 1) << copies_log2; i += BLOCK_THREADS) {
+        int column = i >> copies_log2, next = min(column + 1, t.columns);
+        float4 e = rgba[column], n = rgba[next];
+        shared[2 * i] = e;
+        shared[2 * i + 1] = make_float4(n.x - e.x, n.y - e.y, n.z - e.z, n.w - e.w);
+    }
+    __syncthreads();
+    const int copy = threadIdx.x & ((1 << copies_log2) - 1);
+    return lookup{shared + 2 * copy, (int)(2 * sizeof(float4)) << copies_log2, true};
+}
+
+template <kernel_mode mode, kernel_filter filter, kernel_skip skip, int known_type>
+static __global__ void __launch_bounds__(BLOCK_THREADS, mode == KERNEL_LIT ? 2 : 4)
+    march_kernel(const __grid_constant__ kernel_frame f, const march_launch launch, float4 *rgba, uint32_t *counts)
+{
+    extern __shared__ float4 shared[];
+    const reference_voxel type = known_type == ANY_TYPE ? f.volume.type : (reference_voxel)known_type;
+    const int thread = threadIdx.x;
+    lookup table = {(const float4 *)f.table.rgba, sizeof(float4), false};
+    if (mode != KERNEL_LIT || f.table.rows == 1)
+        table = share_table(f.table, launch.copies_log2, shared);
+    const int lane = thread & 31, warp = thread >> 5, width = 1 << launch.warp_log2, height = 32 >> launch.warp_log2;
+    const int x = (blockIdx.x * 2 + (warp & 1)) * width + (lane & (width - 1));
+    const int y = (blockIdx.y * 4 + (warp >> 1)) * height + (lane >> launch.warp_log2);
+    if (x >= f.camera.width_px || y >= f.camera.height_px)
+        return;
+    kernel_ray ray = ray_make(&f, x, y);
+    packet rays;
+    for (int a = 0; a < 3; a++) {
+        rays.start[a] = (float)(ray.start[a] + place_shift(filter));
+        rays.step[a] = (float)ray.step[a];
+    }
+    rays.count = ray.count;
+    packet_result result = march(&f, &table, &rays, mode, filter, skip, type);
+    size_t i = (size_t)y * f.camera.width_px + x;
+    rgba[i] = make_float4(result.rgba[0], result.rgba[1], result.rgba[2], result.rgba[3]);
+    counts[i] = (uint32_t)result.samples;
+}
+
+typedef void march_function(const kernel_frame f, const march_launch launch, float4 *rgba, uint32_t *counts);
+
+/* The kernel of a variant: each parameter in turn becomes a constant. */
+template <kernel_mode mode, kernel_skip skip> static march_function *by_filter(const kernel_frame *f)
+{
+    switch (f->filter) {
+    case KERNEL_NEAREST: return march_kernel<mode, KERNEL_NEAREST, skip, ANY_TYPE>;
+    case KERNEL_LINEAR: return march_kernel<mode, KERNEL_LINEAR, skip, ANY_TYPE>;
+    case KERNEL_CELLS:
+        return f->volume.type == REFERENCE_UINT8 ? march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT8>
+                                                 : march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT16>;
+    default: return march_kernel<mode, KERNEL_TEXTURE, skip, ANY_TYPE>;
+    }
+}
+
+template <kernel_mode mode> static march_function *by_skip(const kernel_frame *f)
+{
+    return f->skip == KERNEL_SKIP_NONE ? by_filter<mode, KERNEL_SKIP_NONE>(f) : by_filter<mode, KERNEL_SKIP_EMPTY>(f);
+}
+
+static march_function *march_variant(kernel_mode mode, const kernel_frame *f)
+{
+    switch (mode) {
+    case KERNEL_OVER: return by_skip<KERNEL_OVER>(f);
+    case KERNEL_LIT: return by_skip<KERNEL_LIT>(f);
+    default: return by_skip<KERNEL_MIP>(f);
+    }
+}
+
+/* The width of warps, as a power of two, whose pixels' samples lie in the fewest pieces of memory: of `piece` voxels
+ * along each axis, at the volume's centre. */
+static int32_t best_warp(const kernel_frame *f, const double piece[3])
+{
+    const reference_camera *c = &f->camera;
+    double along = 0, length = 0, least = INFINITY;
+    int32_t best = 4;
+    for (int a = 0; a < 3; a++) {
+        double half_x = c->width_px / 2.0, half_y = c->height_px / 2.0;
+        double o = c->origin[0][a] + half_x * c->origin[1][a] + half_y * c->origin[2][a];
+        double d = c->direction[0][a] + half_x * c->direction[1][a] + half_y * c->direction[2][a];
+        along += (f->volume.dims_vox[a] / 2.0 - o) * d;
+        length += d * d;
+    }
+    double depth = length > 0 ? along / length : 0;
+    for (int32_t log2 = 0; log2 <= 5; log2++) {
+        double pieces = 1;
+        for (int a = 0; a < 3; a++) {
+            double across = fabs(c->origin[1][a] + depth * c->direction[1][a]) * ((1 << log2) - 1);
+            double down = fabs(c->origin[2][a] + depth * c->direction[2][a]) * ((32 >> log2) - 1);
+            pieces *= (across + down + 1) / piece[a] + 1;
+        }
+        if (pieces < least) {
+            least = pieces;
+            best = log2;
+        }
+    }
+    return best;
+}
+
+static size_t table_bytes(const kernel_frame *f, int32_t copies_log2)
+{
+    return (f->table.columns + 1) * 2 * sizeof(float4) << copies_log2;
+}
+
+static march_launch launch_of(const kernel_frame *f)
+{
+    static const double line_voxels[] = {128, 64, 32};
+    const double line = f->filter == KERNEL_CELLS ? line_voxels[f->volume.type] / 8 : line_voxels[f->volume.type];
+    const double linear[3] = {line, 1, 1}, texture[3] = {16, 2, 1};
+    march_launch launch = {best_warp(f, f->filter == KERNEL_TEXTURE ? texture : linear), 0};
+    while (launch.copies_log2 < 2 && table_bytes(f, launch.copies_log2 + 1) <= COPIES_BYTES)
+        launch.copies_log2++;
+    return launch;
+}
+
+/* The frame's tables on the card, in place of the host's. */
+static reference_status take_tables(frame_memory *m, kernel_frame *f, vodr_error *error)
+{
+    void *piece;
+    size_t entries = ((size_t)f->table.columns + 1) * ((size_t)f->table.rows + 1);
+    size_t count = (size_t)f->blocks.count[0] * (size_t)f->blocks.count[1] * (size_t)f->blocks.count[2];
+    TRY_STATUS(take(m, entries * sizeof(float4), f->table.rgba, &piece, error));
+    f->table.rgba = piece;
+    if (f->skip == KERNEL_SKIP_NONE)
+        return REFERENCE_OK;
+    TRY_STATUS(take(m, count, f->blocks.distance, &piece, error));
+    f->blocks.distance = (const uint8_t *)piece;
+    TRY_STATUS(take(m, count * sizeof *f->blocks.most, f->blocks.most, &piece, error));
+    f->blocks.most = (const float *)piece;
+    return REFERENCE_OK;
+}
+
+static reference_status take_volume(cuda_state *s, kernel_frame *f, reference_stats *stats, vodr_error *error)
+{
+    TRY_STATUS(f->filter == KERNEL_TEXTURE ? need_texture(s, error) : need_linear(s, error));
+    if (f->filter == KERNEL_LINEAR) {
+        TRY_STATUS(want_cells(s, stats, error));
+        f->filter = s->cells ? KERNEL_CELLS : KERNEL_LINEAR;
+    }
+    f->volume.voxels = s->linear;
+    f->volume.cells = s->cells;
+    f->volume.texture = s->texture;
+    return REFERENCE_OK;
+}
+
+static reference_status draw_march(cuda_state *s, frame_memory *m, const device_march *job, float4 *host,
+                                   reference_stats *stats, vodr_error *error)
+{
+    kernel_frame f = job->frame;
+    void *out, *counts;
+    size_t pixels = (size_t)f.camera.width_px * (size_t)f.camera.height_px;
+    TRY_STATUS(take_volume(s, &f, stats, error));
+    TRY_STATUS(check_room(pixels * (sizeof *host + sizeof(uint32_t)), "the frame", error));
+    TRY_STATUS(take_tables(m, &f, error));
+    TRY_STATUS(take(m, pixels * sizeof *host, NULL, &out, error));
+    TRY_STATUS(take(m, pixels * sizeof(uint32_t), NULL, &counts, error));
+    march_function *variant = march_variant(job->mode, &f);
+    const march_launch launch = launch_of(&f);
+    const int width = 2 << launch.warp_log2, height = 4 * (32 >> launch.warp_log2);
+    const dim3 grid((f.camera.width_px + width - 1) / width, (f.camera.height_px + height - 1) / height);
+    const size_t shared_bytes = table_bytes(&f, launch.copies_log2);
+    TRY(cudaFuncSetAttribute(variant, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared_bytes));
+    TRY(cudaEventRecord(s->begin));
+    variant<<<grid, BLOCK_THREADS, shared_bytes>>>(f, launch, (float4 *)out, (uint32_t *)counts);
+    TRY_STATUS(finish(s, (const uint32_t *)counts, pixels, stats, error));
+    TRY(cudaMemcpy(host, out, pixels * sizeof *host, cudaMemcpyDeviceToHost));
+    return REFERENCE_OK;
+}
+
+static reference_status cuda_march(void *state, const device_march *job, double *rgba, reference_stats *stats,
+                                   vodr_error *error)
+{
+    frame_memory m = {};
+    size_t pixels = (size_t)job->frame.camera.width_px * (size_t)job->frame.camera.height_px;
+    float4 *host = (float4 *)malloc(pixels * sizeof *host);
+    if (!host)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu pixels", pixels);
+    reference_status status = draw_march((cuda_state *)state, &m, job, host, stats, error);
+    for (size_t i = 0; status == REFERENCE_OK && i < pixels; i++) {
+        rgba[4 * i] = host[i].x;
+        rgba[4 * i + 1] = host[i].y;
+        rgba[4 * i + 2] = host[i].z;
+        rgba[4 * i + 3] = host[i].w;
+    }
+    free(host);
+    release(&m);
+    return status;
+}
+
+static const device_ops ops = {cuda_open, cuda_close, cuda_fixed, cuda_march};
+
+const device_ops *device_cuda(void)
+{
+    return &ops;
+}

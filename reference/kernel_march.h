@@ -1,0 +1,140 @@
+/* kernel_march.h - along the rays of LANES pixels, front to back: sampled, classified, shaded, blended or the greatest
+ * kept; empty blocks passed over; ended when opaque. */
+#ifndef REFERENCE_KERNEL_MARCH_H
+#define REFERENCE_KERNEL_MARCH_H
+
+#include "kernel_skip.h"
+
+typedef struct packet_result {
+    real rgba[4]; /* premultiplied */
+    whole samples;
+} packet_result;
+
+KERNEL march_lane march_prepare(const kernel_frame *f, const packet *rays)
+{
+    march_lane lane;
+    real square = spread(0);
+    for (int a = 0; a < 3; a++) {
+        mask still = (rays->step[a] < (REAL)1e-12) & (rays->step[a] > (REAL)-1e-12);
+        lane.inverse[a] = pick(still, spread(0), 1 / pick(still, spread(1), rays->step[a]));
+        lane.light[a] = -rays->step[a] * (REAL)f->camera.spacing_vox[a];
+        square = square + lane.light[a] * lane.light[a];
+    }
+    real length = root(square);
+    length = pick(length > 0, length, spread(1));
+    for (int a = 0; a < 3; a++)
+        lane.light[a] = lane.light[a] / length;
+    return lane;
+}
+
+/* Adds the sample at p of the lanes `on` behind what is there. */
+KERNEL void march_over(const kernel_frame *f, const march_lane *lane, const lookup *entries, kernel_mode mode,
+                       reference_voxel type, kernel_filter filter, const real p[3], real value, mask on,
+                       packet_result *out)
+{
+    const bool by_gradient = mode == KERNEL_LIT && f->table.rows > 1;
+    real colour[4] = {value, value, value, value}, gradient[3], column = classify_column(&f->table, value);
+    mask seen = on & (column > (REAL)f->table.first) & (column < (REAL)f->table.last);
+    if ((LANES > 1 || mode == KERNEL_LIT) && !any_lane(seen))
+        return;
+    if (!by_gradient) {
+        classify(entries, column, colour);
+        seen = seen & (colour[3] > 0);
+    }
+    if (mode == KERNEL_LIT) {
+        if (!any_lane(seen))
+            return;
+        sample_gradient(f, type, filter, p, gradient);
+        out->samples = out->samples + pick_whole(seen, spread_whole(6), spread_whole(0));
+        real magnitude = root(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
+        if (by_gradient)
+            classify_by_gradient(&f->table, entries, column, magnitude, colour);
+        if (f->phong)
+            shade_phong(lane, gradient, magnitude, magnitude * (REAL)f->surface_scale, colour);
+    }
+    real through = pick(on, 1 - out->rgba[3], spread(0));
+    for (int c = 0; c < 4; c++)
+        out->rgba[c] = out->rgba[c] + colour[c] * through;
+}
+
+/* Takes the samples n to n + batch - 1 of the live lanes; without `all`, only those before `end`. The volume is read
+ * for all of them before the first is used, so that a card has several reads under way. With `ends`, opaque rays end.
+ */
+KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
+                        kernel_mode mode, kernel_filter filter, reference_voxel type, int batch, bool all, bool ends,
+                        progress *s, packet_result *out)
+{
+    real p[MAX_BATCH][3], value[MAX_BATCH];
+    const real from = to_real(s->n), last = to_real(s->end - 1);
+    for (int k = 0; k < batch; k++) {
+        real at = from + (REAL)k;
+        if (!all)
+            at = pick(at > last, last, at);
+        for (int a = 0; a < 3; a++)
+            p[k][a] = rays->start[a] + at * rays->step[a];
+        value[k] = sample(&f->volume, type, filter, p[k]);
+    }
+    for (int k = 0; k < batch; k++) {
+        mask on = all ? s->live : s->live & (s->n + k < s->end);
+        out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
+        if (mode == KERNEL_MIP) {
+            real most = larger(value[k], s->greatest);
+            s->greatest = all && LANES == 1 ? most : pick(on, most, s->greatest);
+            continue;
+        }
+        march_over(f, lane, entries, mode, type, filter, p[k], value[k], on, out);
+        if (ends)
+            s->live = s->live & (out->rgba[3] < (REAL)f->termination);
+    }
+}
+
+/* Takes samples before `end`: on a card all of them, on the CPU, where lanes have ends of their own, the next. */
+KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
+                      kernel_mode mode, kernel_filter filter, reference_voxel type, progress *s, packet_result *out)
+{
+    const int batch = mode == KERNEL_LIT ? 1 : MAX_BATCH;
+    if (LANES > 1) {
+        march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
+        s->live = s->live & (s->n + 1 < rays->count);
+        s->n = pick_whole(s->live, s->n + 1, s->n);
+        return;
+    }
+    if (mode == KERNEL_MIP || f->termination > 1)
+        for (; any_lane(s->n + batch <= s->end); s->n = s->n + batch)
+            march_batch(f, lane, entries, rays, mode, filter, type, batch, true, false, s, out);
+    else
+        for (; any_lane(s->live & (s->n + batch <= s->end)); s->n = s->n + batch)
+            march_batch(f, lane, entries, rays, mode, filter, type, batch, true, true, s, out);
+    if (batch > 1 && any_lane(s->live & (s->n < s->end)))
+        march_batch(f, lane, entries, rays, mode, filter, type, batch, false, true, s, out);
+    s->n = s->end;
+    s->live = s->live & (s->n < rays->count);
+}
+
+/* The whole ray. mode, filter, skip and type are constants where this is inlined; `entries` is the table, wherever the
+ * device keeps it. */
+KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const packet *rays, kernel_mode mode,
+                           kernel_filter filter, kernel_skip skip, reference_voxel type)
+{
+    packet_result out = {{spread(0), spread(0), spread(0), spread(0)}, spread_whole(0)};
+    const march_lane lane = march_prepare(f, rays);
+    const REAL lowest = (REAL)-1e30;
+    progress s = {spread_whole(0), rays->count, spread(lowest), 0 < rays->count};
+    if (skip != KERNEL_SKIP_NONE)
+        s.end = spread_whole(0);
+    while (any_lane(s.live)) {
+        if (skip != KERNEL_SKIP_NONE)
+            march_skip(f, &lane, rays, mode, filter, &s);
+        if (any_lane(s.live))
+            march_run(f, &lane, entries, rays, mode, filter, type, &s, &out);
+    }
+    if (mode == KERNEL_MIP) {
+        real colour[4];
+        classify(entries, classify_column(&f->table, s.greatest), colour);
+        for (int c = 0; c < 4; c++)
+            out.rgba[c] = pick(s.greatest > lowest, colour[c], spread(0));
+    }
+    return out;
+}
+
+#endif

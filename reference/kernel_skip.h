@@ -1,0 +1,82 @@
+/* kernel_skip.h - past the blocks with nothing to show. */
+#ifndef REFERENCE_KERNEL_SKIP_H
+#define REFERENCE_KERNEL_SKIP_H
+
+#include "kernel_colour.h"
+
+/* The rays of kernel_ray.h, a lane each, at places of the filter; past its count a lane rests. */
+typedef struct packet {
+    real start[3], step[3];
+    whole count;
+} packet;
+
+/* Where rays are. */
+typedef struct progress {
+    whole n;       /* the next sample; of a lane that rests, any of its samples */
+    whole end;     /* the samples before this one are to be taken */
+    real greatest; /* mip: so far */
+    mask live;
+} progress;
+
+/* The block of a place in the volume, its number along each axis and in all. */
+KERNEL whole block_of(const kernel_blocks *b, REAL shift, const real p[3], whole at[3])
+{
+    for (int a = 0; a < 3; a++) {
+        real cell = floor_real(p[a] + ((REAL)0.5 - shift));
+        at[a] = truncate((cell + (REAL)0.5) * (REAL)(1.0 / b->edge_vox));
+    }
+    return (at[2] * b->count[1] + at[1]) * b->count[0] + at[0];
+}
+
+/* How many samples on, at least one, the first lies that may be outside the blocks less than `distance` from block
+ * `at`. The region is taken smaller by far more than positions are rounded by. */
+KERNEL whole samples_to_leave(const kernel_blocks *b, REAL shift, const march_lane *lane, const real p[3],
+                              const whole at[3], whole distance)
+{
+    real least = spread(1 << 20);
+    for (int a = 0; a < 3; a++) {
+        mask rising = lane->inverse[a] > 0;
+        whole border = pick_whole(rising, at[a] + distance, at[a] + 1 - distance) * b->edge_vox;
+        real margin = pick(rising, spread(shift - (REAL)0.5 - (REAL)0x1p-6), spread(shift - (REAL)0.5 + (REAL)0x1p-6));
+        real steps = (to_real(border) + margin - p[a]) * lane->inverse[a];
+        steps = pick(lane->inverse[a] == 0, least, steps);
+        least = smaller(steps, least);
+    }
+    return truncate(larger(least, spread(1)));
+}
+
+/* Moves the live lanes that have taken all samples before `end` to the next block that shows something, and `end` to
+ * where they may leave it. */
+KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_mode mode,
+                       kernel_filter filter, progress *s)
+{
+    const kernel_blocks *b = &f->blocks;
+    const REAL shift = place_shift(filter);
+    const REAL above = filter == KERNEL_TEXTURE ? (REAL)(1 + 0x1p-16) : 1; /* a texture unit's own rounding */
+    mask asks = s->live & (s->n >= s->end);
+    if (mode == KERNEL_MIP) {
+        s->live = s->live & unless(asks & (s->greatest >= (REAL)b->top * above));
+        asks = asks & s->live;
+    }
+    while (any_lane(asks)) {
+        real p[3];
+        whole at[3], distance;
+        for (int a = 0; a < 3; a++)
+            p[a] = rays->start[a] + to_real(s->n) * rays->step[a];
+        whole block = block_of(b, shift, p, at);
+        if (mode == KERNEL_MIP)
+            distance = pick_whole(fetch_float(b->most, block) * above <= s->greatest, spread_whole(1), spread_whole(0));
+        else
+            distance = fetch_byte(b->distance, block);
+        mask shows = distance == 0;
+        whole next = s->n + samples_to_leave(b, shift, lane, p, at, pick_whole(shows, spread_whole(1), distance));
+        mask ends = next >= rays->count;
+        s->end = pick_whole(asks & shows, pick_whole(ends, rays->count, next), s->end);
+        asks = asks & unless(shows);
+        s->live = s->live & unless(asks & ends);
+        asks = asks & s->live;
+        s->n = pick_whole(asks, next, s->n);
+    }
+}
+
+#endif

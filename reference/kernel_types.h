@@ -1,0 +1,80 @@
+/* kernel_types.h - what a kernel is given: plain data, the same on the CPU and on a card, pointers aside. */
+#ifndef REFERENCE_KERNEL_TYPES_H
+#define REFERENCE_KERNEL_TYPES_H
+
+#include "reference.h"
+
+/* Reconstruction, as kernels know it: the filters of reference.h, and what numbers make of them. */
+typedef enum kernel_filter {
+    KERNEL_NEAREST,
+    KERNEL_LINEAR,  /* from the voxels as they are */
+    KERNEL_CELLS,   /* the same filter, from packed cells */
+    KERNEL_TEXTURE, /* weights of 8 fraction bits */
+    KERNEL_FILTERS,
+} kernel_filter;
+
+/* What becomes of the samples of a ray. */
+typedef enum kernel_mode { KERNEL_OVER, KERNEL_LIT, KERNEL_MIP, KERNEL_MODES } kernel_mode;
+
+/* What a block's byte says. */
+typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIPS } kernel_skip;
+
+/* One pixel's ray, clipped to the volume: sample n of `count` lies at start + n*step, in voxels. */
+typedef struct kernel_ray {
+    double start[3], step[3];
+    int32_t count;
+} kernel_ray;
+
+/* Cell i of an axis lies between the centres of voxels i-1 and i, clamped to the volume, so that an axis has one more
+ * than voxels. A position p voxels from the volume's corner lies in cell floor(p + 0.5). */
+typedef struct kernel_volume {
+    int32_t dims_vox[3];
+    reference_voxel type;
+    const void *voxels;
+    const void *cells;          /* the voxels around each cell, together: as lanes_*.h of the device reads them */
+    unsigned long long texture; /* CUDA: the same voxels as a texture object; normalised where they are integers */
+} kernel_volume;
+
+/* Blocks of `edge` cells. distance[b]: 0, the block is to be sampled; D, no block closer than D, diagonals counting 1,
+ * has anything to show. */
+typedef struct kernel_blocks {
+    int32_t edge_vox, count[3];
+    const uint8_t *distance; /* over */
+    const float *most;       /* mip: the greatest stored value a sample in the block can have */
+    float top;               /* of all blocks */
+} kernel_blocks;
+
+/* Colour of a sample: entries of r, g, b, a. Each row has a copy of its last entry behind it, and the last row a copy
+ * below, so that what is linear between entries needs no care at the ends. */
+typedef struct kernel_table {
+    int32_t columns, rows;
+    const void *rgba;      /* of the numbers drawn in; entry (row, column) is number row*(columns + 1) + column */
+    double first, last;    /* columns between which a sample may show something; with one row */
+    double scale, offset;  /* column = (stored*scale + offset) * (columns - 1) */
+    double gradient_scale; /* row = gradient magnitude, of stored values a finest voxel, times this * (rows - 1) */
+} kernel_table;
+
+typedef struct kernel_frame {
+    reference_camera camera;
+    kernel_volume volume;
+    kernel_blocks blocks;
+    kernel_table table;
+    kernel_filter filter;
+    kernel_skip skip;
+    double termination;
+    bool phong;
+    double surface_scale; /* phong: from a gradient magnitude of 1/surface_scale on there is a whole surface */
+} kernel_frame;
+
+/* ---- the machine's arithmetic ---- */
+
+typedef struct kernel_fixed {
+    vodr_view view;
+    int32_t dims_vox[3], voxel_bytes, density_bits, weight_bits, guard_bits, bits; /* bits: of a channel of the frame */
+    int32_t blend, filter;                                                         /* of vodr_hw.h */
+    const void *voxels;
+    const uint16_t *map;    /* of 256 entries; 8-bit voxels only */
+    const vodr_rgba *table; /* of the frame's bits */
+} kernel_fixed;
+
+#endif

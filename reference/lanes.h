@@ -1,0 +1,33 @@
+/* lanes.h - the numbers that kernels compute with: on a card one lane a thread, on the CPU vectors of several rays.
+ *
+ * Kernels are written once over `real`, `whole` and `mask`; control flow asks any_lane(mask). REAL, the type of a lane,
+ * is defined by the file that includes a kernel: float or double. Each lane computes the same, whatever its neighbours
+ * do.
+ */
+#ifndef REFERENCE_LANES_H
+#define REFERENCE_LANES_H
+
+#ifdef __CUDACC__
+#define KERNEL static __device__ __forceinline__
+#else
+#define KERNEL static inline __attribute__((always_inline))
+#endif
+
+/* Before a loop that is not to be unrolled. */
+#ifdef __clang__
+#define ROLLED _Pragma("clang loop unroll(disable)")
+#elif defined(__CUDACC__)
+#define ROLLED _Pragma("unroll 1")
+#else
+#define ROLLED _Pragma("GCC unroll 1")
+#endif
+
+#ifdef REAL
+#ifdef __CUDACC__
+#include "lanes_cuda.h"
+#else
+#include "lanes_cpu.h"
+#endif
+#endif
+
+#endif

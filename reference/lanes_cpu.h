@@ -1,0 +1,166 @@
+/* lanes_cpu.h - lanes.h on the CPU: vectors of 64 bytes, in as many registers as the instruction set needs. Look-ups
+ * are scalar loads: they go faster than gather instructions where those are slow, and no slower elsewhere. */
+#ifndef REFERENCE_LANES_CPU_H
+#define REFERENCE_LANES_CPU_H
+
+#include <string.h>
+
+#include "kernel_types.h"
+
+#define WHOLE_OF_float int32_t
+#define WHOLE_OF_double int64_t
+#define WHOLE_OF(type) WHOLE_OF_AGAIN(type)
+#define WHOLE_OF_AGAIN(type) WHOLE_OF_##type
+
+typedef REAL real __attribute__((vector_size(64)));
+typedef WHOLE_OF(REAL) whole __attribute__((vector_size(64)));
+typedef whole mask;
+
+enum { LANES = sizeof(real) / sizeof(REAL), MAX_BATCH = 1 };
+
+KERNEL real spread(REAL x)
+{
+    return x - (real){0};
+}
+
+KERNEL whole spread_whole(int32_t x)
+{
+    return x - (whole){0};
+}
+
+KERNEL real to_real(whole i)
+{
+    return __builtin_convertvector(i, real);
+}
+
+KERNEL whole truncate(real x)
+{
+    return __builtin_convertvector(x, whole);
+}
+
+KERNEL whole floor_of(real x)
+{
+    whole i = truncate(x);
+    return i + (to_real(i) > x);
+}
+
+KERNEL real floor_real(real x)
+{
+    return to_real(floor_of(x));
+}
+
+KERNEL whole pick_whole(mask m, whole a, whole b)
+{
+    return (a & m) | (b & ~m);
+}
+
+KERNEL real pick(mask m, real a, real b)
+{
+    return (real)pick_whole(m, (whole)a, (whole)b);
+}
+
+KERNEL real smaller(real a, real b)
+{
+    return pick(a < b, a, b);
+}
+
+KERNEL real larger(real a, real b)
+{
+    return pick(a > b, a, b);
+}
+
+/* Moves into [0, 1]. */
+KERNEL real saturate(real x)
+{
+    return smaller(larger(x, spread(0)), spread(1));
+}
+
+KERNEL bool any_lane(mask m)
+{
+    uint64_t word[8], all = 0;
+    memcpy(word, &m, sizeof word);
+    for (int i = 0; i < 8; i++)
+        all |= word[i];
+    return all != 0;
+}
+
+KERNEL mask unless(mask m)
+{
+    return ~m;
+}
+
+KERNEL real root(real x)
+{
+    for (int l = 0; l < LANES; l++)
+        x[l] = sizeof(REAL) == sizeof(float) ? (REAL)__builtin_sqrtf((float)x[l]) : (REAL)__builtin_sqrt((double)x[l]);
+    return x;
+}
+
+KERNEL real fetch(const kernel_volume *v, reference_voxel type, whole index)
+{
+    real value;
+    switch (type) {
+    case REFERENCE_UINT8:
+        for (int l = 0; l < LANES; l++)
+            value[l] = ((const uint8_t *)v->voxels)[index[l]];
+        break;
+    case REFERENCE_UINT16:
+        for (int l = 0; l < LANES; l++)
+            value[l] = ((const uint16_t *)v->voxels)[index[l]];
+        break;
+    default:
+        for (int l = 0; l < LANES; l++)
+            value[l] = ((const float *)v->voxels)[index[l]];
+    }
+    return value;
+}
+
+KERNEL whole fetch_byte(const uint8_t *bytes, whole index)
+{
+    whole value;
+    for (int l = 0; l < LANES; l++)
+        value[l] = bytes[index[l]];
+    return value;
+}
+
+KERNEL real fetch_float(const float *values, whole index)
+{
+    real value;
+    for (int l = 0; l < LANES; l++)
+        value[l] = values[index[l]];
+    return value;
+}
+
+/* A table in memory. */
+typedef struct lookup {
+    const REAL *rgba;
+} lookup;
+
+#ifdef LANES_OF_FLOAT
+#include "lanes_cpu_float.h"
+#else
+
+/* Packed cells are of use where speed is. */
+KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
+{
+    (void)v, (void)type;
+    for (int i = 0; i < 4; i++)
+        edge[i] = share[i % 3] = place[i % 3];
+}
+
+/* The colour between entry `index` and the one behind it. */
+KERNEL void fetch_colour(const lookup *table, whole index, real share, real colour[4])
+{
+    for (int c = 0; c < 4; c++) {
+        real next;
+        for (int l = 0; l < LANES; l++) {
+            colour[c][l] = table->rgba[4 * index[l] + c];
+            next[l] = table->rgba[4 * index[l] + 4 + c];
+        }
+        colour[c] = colour[c] + (next - colour[c]) * share;
+    }
+}
+
+#endif
+
+#endif

@@ -1,0 +1,368 @@
+/* reference.c - the reference renderer's front: inputs checked, tables made, a frame handed to the device. */
+#include "reference.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "blocks.h"
+#include "device.h"
+
+enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MAX_BLOCK_VOX = 32768, MOST_SAMPLES = 1 << 24 };
+
+/* A gradient of the whole window over this many finest voxels makes a whole surface. */
+static const double surface_vox = 1024;
+
+struct reference {
+    const device_ops *ops;
+    void *state;
+    reference_volume volume;
+    blocks blocks; /* of the last edge asked for */
+    char name[DEVICE_NAME_CHARS];
+};
+
+reference_status reference_fail(vodr_error *error, reference_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    if (error)
+        vsnprintf(error->text, sizeof error->text, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+/* ---- a reference ---- */
+
+static reference_status check_volume(const reference_volume *v, vodr_error *error)
+{
+    for (int a = 0; a < 3; a++)
+        if (v->dims_vox[a] < 1 || v->dims_vox[a] > VODR_MAX_DIM_VOX)
+            return reference_fail(error, REFERENCE_INVALID, "the volume's size along %c is %d, must be 1 to %d voxels",
+                                  "xyz"[a], v -> dims_vox[a], VODR_MAX_DIM_VOX);
+    return REFERENCE_OK;
+}
+
+reference_status reference_open(const reference_options *options, const reference_volume *volume, reference **out,
+                                vodr_error *error)
+{
+    *out = NULL;
+    reference_status status = check_volume(volume, error);
+    if (status != REFERENCE_OK)
+        return status;
+    const device_ops *ops = options->device == REFERENCE_CUDA ? device_cuda() : &device_cpu;
+    if (!ops)
+        return reference_fail(error, REFERENCE_NO_DEVICE, "this build has no CUDA: make found no nvcc");
+    reference *r = calloc(1, sizeof *r);
+    if (!r)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the reference renderer");
+    r->ops = ops;
+    r->volume = *volume;
+    status = ops->open(options, volume, &r->state, r->name, error);
+    if (status == REFERENCE_OK)
+        *out = r;
+    else
+        free(r);
+    return status;
+}
+
+void reference_close(reference *r)
+{
+    if (!r)
+        return;
+    r->ops->close(r->state);
+    blocks_free(&r->blocks);
+    free(r);
+}
+
+const char *reference_device_name(const reference *r)
+{
+    return r->name;
+}
+
+/* ---- the machine's arithmetic ---- */
+
+/* Section 6 of docs/architecture.md: a table's channel converted from tf_bits to fb_bits. */
+static uint16_t convert_channel(uint16_t value, int32_t tf_bits, int32_t fb_bits)
+{
+    if (tf_bits == fb_bits)
+        return value;
+    return (uint16_t)(tf_bits == 8 ? value * 257 : (value + 128) / 257);
+}
+
+static reference_status check_table(const vodr_table *table, const vodr_machine *m, vodr_error *error)
+{
+    size_t count = (size_t)1 << m->density_bits;
+    if (table->count != count)
+        return reference_fail(error, REFERENCE_INVALID, "the table has %zu entries, must have %zu", table->count,
+                              count);
+    for (size_t i = 0; i < count; i++) {
+        const vodr_rgba *e = &table->entries[i];
+        if (e->a >> m->tf_bits || e->r > e->a || e->g > e->a || e->b > e->a)
+            return reference_fail(error, REFERENCE_INVALID,
+                                  "entry %zu of the table is %d %d %d %d, must be premultiplied, of %d bits a channel",
+                                  i, e->r, e->g, e->b, e->a, m->tf_bits);
+    }
+    return REFERENCE_OK;
+}
+
+/* Sections 2 and 6: what is refused. */
+static reference_status check_fixed(const reference *r, const vodr_machine *m, const uint16_t *map,
+                                    const vodr_table *table, const vodr_view *view, vodr_error *error)
+{
+    if (r->volume.type == REFERENCE_FLOAT32)
+        return reference_fail(error, REFERENCE_INVALID, "the machine's voxels are integers, not floats");
+    if (r->volume.type == REFERENCE_UINT8 && !map && m->density_bits != 8)
+        return reference_fail(error, REFERENCE_INVALID, "density_bits is %d, must be 8 for 8-bit voxels without a map",
+                              m->density_bits);
+    for (int i = 0; map && r->volume.type == REFERENCE_UINT8 && i < 256; i++)
+        if (map[i] >> m->density_bits)
+            return reference_fail(error, REFERENCE_INVALID, "entry %d of the map is %d, must be below 2^%d", i, map[i],
+                                  m->density_bits);
+    if (vodr_machine_check(m, error) != VODR_OK || vodr_view_check(view, r->volume.dims_vox, error) != VODR_OK)
+        return REFERENCE_INVALID;
+    return check_table(table, m, error);
+}
+
+/* Packs pixels into a frame of its bits. */
+static reference_status make_frame(int32_t width_px, int32_t height_px, int32_t bits, vodr_frame *frame,
+                                   vodr_error *error)
+{
+    size_t bytes = (size_t)width_px * (size_t)height_px * (size_t)bits / 2;
+    *frame = (vodr_frame){width_px, height_px, bits, malloc(bytes), bytes};
+    if (frame->pixels)
+        return REFERENCE_OK;
+    *frame = (vodr_frame){0};
+    return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a frame of %zu bytes", bytes);
+}
+
+static void set_channel(vodr_frame *frame, size_t i, uint16_t value)
+{
+    if (frame->bits == 8)
+        ((uint8_t *)frame->pixels)[i] = (uint8_t)value;
+    else
+        ((uint16_t *)frame->pixels)[i] = value;
+}
+
+static reference_status draw_fixed(reference *r, const kernel_fixed *f, vodr_frame *frame, reference_stats *stats,
+                                   vodr_error *error)
+{
+    size_t count = (size_t)f->view.width_px * (size_t)f->view.height_px;
+    vodr_rgba *pixels = malloc(count * sizeof *pixels);
+    if (!pixels)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu pixels", count);
+    reference_status status = r->ops->fixed(r->state, f, pixels, stats, error);
+    if (status == REFERENCE_OK)
+        status = make_frame(f->view.width_px, f->view.height_px, f->bits, frame, error);
+    for (size_t i = 0; status == REFERENCE_OK && i < count; i++) {
+        const uint16_t channels[4] = {pixels[i].r, pixels[i].g, pixels[i].b, pixels[i].a};
+        for (size_t c = 0; c < 4; c++)
+            set_channel(frame, 4 * i + c, channels[c]);
+    }
+    free(pixels);
+    return status;
+}
+
+reference_status reference_fixed(reference *r, const vodr_machine *m, const uint16_t *map, const vodr_table *table,
+                                 const vodr_view *view, vodr_frame *frame, reference_stats *stats, vodr_error *error)
+{
+    *frame = (vodr_frame){0};
+    *stats = (reference_stats){0};
+    reference_status status = check_fixed(r, m, map, table, view, error);
+    if (status != REFERENCE_OK)
+        return status;
+    double begin_ms = now_ms();
+    uint16_t identity[256];
+    for (int i = 0; i < 256; i++)
+        identity[i] = (uint16_t)i;
+    vodr_rgba *entries = malloc(table->count * sizeof *entries);
+    if (!entries)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a table of %zu entries", table->count);
+    for (size_t i = 0; i < table->count; i++) {
+        const vodr_rgba *e = &table->entries[i];
+        entries[i] =
+            (vodr_rgba){convert_channel(e->r, m->tf_bits, m->fb_bits), convert_channel(e->g, m->tf_bits, m->fb_bits),
+                        convert_channel(e->b, m->tf_bits, m->fb_bits), convert_channel(e->a, m->tf_bits, m->fb_bits)};
+    }
+    kernel_fixed f = {.view = *view,
+                      .voxel_bytes = r->volume.type == REFERENCE_UINT8 ? 1 : 2,
+                      .density_bits = m->density_bits,
+                      .weight_bits = m->weight_bits,
+                      .guard_bits = m->guard_bits,
+                      .bits = m->fb_bits,
+                      .blend = m->blend,
+                      .filter = m->filter,
+                      .voxels = r->volume.voxels,
+                      .map = map ? map : identity,
+                      .table = entries};
+    memcpy(f.dims_vox, r->volume.dims_vox, sizeof f.dims_vox);
+    stats->prepare_ms = now_ms() - begin_ms;
+    status = draw_fixed(r, &f, frame, stats, error);
+    free(entries);
+    return status;
+}
+
+/* ---- floating point ---- */
+
+static reference_status check_march(const reference *r, const reference_march_job *job, vodr_error *error)
+{
+    const reference_table *t = &job->table;
+    int64_t voxels = (int64_t)r->volume.dims_vox[0] * r->volume.dims_vox[1] * r->volume.dims_vox[2];
+    if (voxels > INT32_MAX)
+        return reference_fail(error, REFERENCE_INVALID, "the volume has %lld voxels, must have at most %d in float",
+                              (long long)voxels, INT32_MAX);
+    if (job->numbers == REFERENCE_DOUBLE && r->ops != &device_cpu)
+        return reference_fail(error, REFERENCE_INVALID, "double numbers are drawn on the CPU only");
+    if (t->columns < 2 || t->columns > MAX_COLUMNS || t->rows < 1 || (int64_t)t->columns * t->rows > MAX_TABLE)
+        return reference_fail(error, REFERENCE_INVALID,
+                              "the table is %dx%d, must have 2 to %d columns and at most %d entries", t->columns,
+                              t->rows, MAX_COLUMNS, MAX_TABLE);
+    if (job->block_vox < 2 || job->block_vox > MAX_BLOCK_VOX)
+        return reference_fail(error, REFERENCE_INVALID, "a block has %d voxels a side, must have 2 to %d",
+                              job->block_vox, MAX_BLOCK_VOX);
+    if (job->camera.most > MOST_SAMPLES)
+        return reference_fail(error, REFERENCE_INVALID, "a ray has %lld samples, must have at most %d",
+                              (long long)job->camera.most, MOST_SAMPLES);
+    return REFERENCE_OK;
+}
+
+/* The table in the numbers it is used in, with copies of its last entries behind (kernel_types.h). */
+static void *convert_table(const reference_march_job *job)
+{
+    const reference_table *t = &job->table;
+    const bool wide = job->numbers == REFERENCE_DOUBLE;
+    size_t across = (size_t)t->columns + 1, down = (size_t)t->rows + 1;
+    void *rgba = malloc(4 * across * down * (wide ? sizeof(double) : sizeof(float)));
+    for (size_t i = 0; rgba && i < 4 * across * down; i++) {
+        size_t column = i / 4 % across, row = i / 4 / across;
+        column -= column == across - 1;
+        row -= row == down - 1;
+        double value = t->rgba[4 * (row * (across - 1) + column) + i % 4];
+        if (wide)
+            ((double *)rgba)[i] = value;
+        else
+            ((float *)rgba)[i] = (float)value;
+    }
+    return rgba;
+}
+
+static bool column_shows(const reference_table *t, int32_t column)
+{
+    for (int32_t row = 0; row < t->rows; row++)
+        if (t->rgba[4 * ((size_t)row * (size_t)t->columns + (size_t)column) + 3] > 0)
+            return true;
+    return false;
+}
+
+/* The columns at which the function begins and ceases to show something; far outside where it does so at its end. */
+static void find_visible(const reference_table *t, double *first, double *last)
+{
+    int32_t lo = 0, hi = t->columns - 1;
+    while (lo < t->columns && !column_shows(t, lo))
+        lo++;
+    while (hi >= 0 && !column_shows(t, hi))
+        hi--;
+    *first = lo == 0 ? -1e30 : lo - 1;
+    *last = hi == t->columns - 1 ? 1e30 : hi + 1;
+}
+
+static reference_status need_blocks(reference *r, int32_t edge_vox, reference_stats *stats, vodr_error *error)
+{
+    if (r->blocks.edge_vox == edge_vox)
+        return REFERENCE_OK;
+    double begin_ms = now_ms();
+    blocks_free(&r->blocks);
+    reference_status status = blocks_make(&r->volume, edge_vox, &r->blocks, error);
+    stats->preprocess_ms = now_ms() - begin_ms;
+    return status;
+}
+
+static kernel_table table_of(const reference_march_job *job, const void *rgba)
+{
+    const reference_table *t = &job->table;
+    kernel_table k = {.columns = t->columns,
+                      .rows = t->rows,
+                      .rgba = rgba,
+                      .scale = job->window_scale,
+                      .offset = job->window_offset,
+                      .gradient_scale = t->rows > 1 ? fabs(job->window_scale) / t->gradient_most : 0};
+    find_visible(t, &k.first, &k.last);
+    return k;
+}
+
+static kernel_mode mode_of(const reference_march_job *job)
+{
+    if (job->blend == REFERENCE_MIP)
+        return KERNEL_MIP;
+    return job->shading == REFERENCE_PHONG || job->table.rows > 1 ? KERNEL_LIT : KERNEL_OVER;
+}
+
+static kernel_filter filter_of(const reference_march_job *job)
+{
+    if (job->filter == REFERENCE_NEAREST)
+        return KERNEL_NEAREST;
+    return job->numbers == REFERENCE_TEXTURE ? KERNEL_TEXTURE : KERNEL_LINEAR;
+}
+
+reference_status reference_march(reference *r, const reference_march_job *job, double *rgba, reference_stats *stats,
+                                 vodr_error *error)
+{
+    *stats = (reference_stats){0};
+    reference_status status = check_march(r, job, error);
+    bool skips = job->accel != REFERENCE_ACCEL_NONE;
+    if (status == REFERENCE_OK && skips)
+        status = need_blocks(r, job->block_vox, stats, error);
+    if (status != REFERENCE_OK)
+        return status;
+    double begin_ms = now_ms();
+    if (skips)
+        status = blocks_classify(&r->blocks, &job->table, job->window_scale, job->window_offset,
+                                 job->accel == REFERENCE_ACCEL_BEST, error);
+    if (status != REFERENCE_OK)
+        return status;
+    void *table = convert_table(job);
+    if (!table)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
+    device_march m = {.frame = {.camera = job->camera,
+                                .volume = {.type = r->volume.type, .voxels = r->volume.voxels},
+                                .table = table_of(job, table),
+                                .filter = filter_of(job),
+                                .skip = skips ? KERNEL_SKIP_EMPTY : KERNEL_SKIP_NONE,
+                                .termination = job->termination,
+                                .phong = job->shading == REFERENCE_PHONG,
+                                .surface_scale = fabs(job->window_scale) * surface_vox},
+                      .numbers = job->numbers,
+                      .mode = mode_of(job)};
+    memcpy(m.frame.volume.dims_vox, r->volume.dims_vox, sizeof r->volume.dims_vox);
+    if (skips) {
+        m.frame.blocks = (kernel_blocks){.edge_vox = r->blocks.edge_vox,
+                                         .distance = r->blocks.distance,
+                                         .most = r->blocks.most,
+                                         .top = r->blocks.top};
+        memcpy(m.frame.blocks.count, r->blocks.count, sizeof r->blocks.count);
+    }
+    stats->prepare_ms = now_ms() - begin_ms;
+    status = r->ops->march(r->state, &m, rgba, stats, error);
+    free(table);
+    return status;
+}
+
+reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits, vodr_frame *frame,
+                                    vodr_error *error)
+{
+    reference_status status = make_frame(camera->width_px, camera->height_px, bits, frame, error);
+    double full = bits == 16 ? 65535 : 255;
+    size_t channels = 4 * (size_t)camera->width_px * (size_t)camera->height_px;
+    for (size_t i = 0; status == REFERENCE_OK && i < channels; i++)
+        set_channel(frame, i, (uint16_t)floor(fmin(fmax(rgba[i], 0), 1) * full + 0.5));
+    return status;
+}
