@@ -65,14 +65,21 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
                         progress *s, packet_result *out)
 {
     real p[MAX_BATCH][3], value[MAX_BATCH];
-    const real from = to_real(s->n), last = to_real(s->end - 1);
+    const real last = to_real(LANES > 1 ? rays->count - 1 : spread_whole(s->end - 1));
     for (int k = 0; k < batch; k++) {
-        real at = from + (REAL)k;
-        if (!all)
+        real at = spread((REAL)s->n + (REAL)k);
+        if (LANES > 1 || !all)
             at = pick(at > last, last, at);
         for (int a = 0; a < 3; a++)
             p[k][a] = rays->start[a] + at * rays->step[a];
         value[k] = sample(&f->volume, type, filter, p[k]);
+    }
+    if (LANES > 1 && filter == KERNEL_CELLS) {
+        real at = spread((REAL)s->n + (REAL)AHEAD), soon[3];
+        at = pick(at > last, last, at);
+        for (int a = 0; a < 3; a++)
+            soon[a] = rays->start[a] + at * rays->step[a];
+        fetch_ahead(&f->volume, type, soon);
     }
     for (int k = 0; k < batch; k++) {
         mask on = all ? s->live : s->live & (s->n + k < s->end);
@@ -88,19 +95,21 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
     }
 }
 
-/* Takes samples before `end`: on a card all of them, on the CPU, where lanes have ends of their own, the next. */
+/* Takes the samples before `end`. On the CPU rays end one by one. */
 KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
                       kernel_mode mode, kernel_filter filter, reference_voxel type, progress *s, packet_result *out)
 {
     const int batch = mode == KERNEL_LIT ? 1 : MAX_BATCH;
     if (LANES > 1) {
-        march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
-        s->live = s->live & (s->n + 1 < rays->count);
-        s->n = pick_whole(s->live, s->n + 1, s->n);
+        while (s->n < s->end && any_lane(s->live)) {
+            march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
+            s->n++;
+            s->live = s->live & (s->n < rays->count);
+        }
         return;
     }
     if (mode == KERNEL_MIP || f->termination > 1)
-        for (; any_lane(s->n + batch <= s->end); s->n = s->n + batch)
+        for (; s->n + batch <= s->end; s->n = s->n + batch)
             march_batch(f, lane, entries, rays, mode, filter, type, batch, true, false, s, out);
     else
         for (; any_lane(s->live & (s->n + batch <= s->end)); s->n = s->n + batch)
@@ -119,9 +128,7 @@ KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const p
     packet_result out = {{spread(0), spread(0), spread(0), spread(0)}, spread_whole(0)};
     const march_lane lane = march_prepare(f, rays);
     const REAL lowest = (REAL)-1e30;
-    progress s = {spread_whole(0), rays->count, spread(lowest), 0 < rays->count};
-    if (skip != KERNEL_SKIP_NONE)
-        s.end = spread_whole(0);
+    progress s = {0, skip == KERNEL_SKIP_NONE ? most_of(rays->count) : 0, spread(lowest), 0 < rays->count};
     while (any_lane(s.live)) {
         if (skip != KERNEL_SKIP_NONE)
             march_skip(f, &lane, rays, mode, filter, &s);

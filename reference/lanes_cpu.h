@@ -5,6 +5,10 @@
 
 #include <string.h>
 
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
 #include "kernel_types.h"
 
 #define WHOLE_OF_float int32_t
@@ -77,11 +81,30 @@ KERNEL real saturate(real x)
 
 KERNEL bool any_lane(mask m)
 {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0;
+#else
     uint64_t word[8], all = 0;
     memcpy(word, &m, sizeof word);
     for (int i = 0; i < 8; i++)
         all |= word[i];
     return all != 0;
+#endif
+}
+
+/* The greatest and the least of all lanes. */
+KERNEL int32_t most_of(whole i)
+{
+    WHOLE_OF(REAL) lane[LANES], most = i[0];
+    memcpy(lane, &i, sizeof lane);
+    for (int l = 1; l < LANES; l++)
+        most = lane[l] > most ? lane[l] : most;
+    return (int32_t)most;
+}
+
+KERNEL int32_t least_of(whole i)
+{
+    return -most_of(-i);
 }
 
 KERNEL mask unless(mask m)

@@ -71,6 +71,17 @@ KERNEL bool any_lane(mask m)
     return m;
 }
 
+/* The greatest and the least of all lanes. */
+KERNEL int32_t most_of(whole i)
+{
+    return i;
+}
+
+KERNEL int32_t least_of(whole i)
+{
+    return i;
+}
+
 KERNEL mask unless(mask m)
 {
     return !m;
