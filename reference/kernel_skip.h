@@ -14,6 +14,7 @@ typedef struct packet {
 typedef struct progress {
     int32_t n;     /* the next sample */
     int32_t end;   /* the samples before this one are to be taken, of each ray that has them */
+    int32_t asked; /* the CPU: what the samples before this one read is on its way */
     real greatest; /* mip: so far */
     mask live;     /* rays that have sample n and are not opaque */
 } progress;
@@ -45,8 +46,8 @@ KERNEL whole samples_to_leave(const kernel_blocks *b, REAL shift, const march_la
     return truncate(larger(least, spread(1)));
 }
 
-/* Once all samples before `end` are taken: moves to the next at which a live ray is in a block that shows something, and
- * `end` to where all such rays may have left theirs. */
+/* Once all samples before `end` are taken: moves to the next at which a live ray is in a block that shows something,
+ * and `end` to where all such rays may have left theirs. */
 KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_mode mode,
                        kernel_filter filter, progress *s)
 {
@@ -78,5 +79,4 @@ KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const pack
         s->live = s->live & (s->n < rays->count);
     }
 }
-
 #endif

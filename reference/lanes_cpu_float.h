@@ -68,15 +68,14 @@ KERNEL whole cell_of(const kernel_volume *v, const real place[3], real share[3])
     return (cell[2] * (v->dims_vox[1] + 1) + cell[1]) * (v->dims_vox[0] + 2) + cell[0];
 }
 
-/* Asks for the cells of places that will be sampled soon: two of each row of the tile, which most often lie in the
- * lines of memory that the row needs. */
+/* Asks for the cells of places that will be sampled soon. */
 KERNEL void fetch_ahead(const kernel_volume *v, reference_voxel type, const real place[3])
 {
     real share[3];
     int32_t index[LANES];
     whole cell = cell_of(v, place, share);
     memcpy(index, &cell, sizeof index);
-    for (int l = 0; l < LANES; l += PF_STEP)
+    for (int l = 0; l < LANES; l++)
         __builtin_prefetch((const char *)v->cells + (type == REFERENCE_UINT8 ? 4 : 8) * (size_t)index[l]);
 }
 
