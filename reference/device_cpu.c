@@ -10,7 +10,7 @@
 #include "device.h"
 #include "kernel_fixed.h"
 
-enum { BAND = 4 * CPU_TILE_PX, MAX_THREADS = 256 };
+enum { BAND = CPU_TILE_PX, MAX_THREADS = 256 };
 
 typedef struct cpu_state {
     int32_t threads;

@@ -19,7 +19,8 @@ typedef struct bundle {
 KERNEL bundle bundle_of(const packet *rays, REAL shift)
 {
     const mask some = rays->count > 0;
-    bundle all = {.most = most_of(rays->count)};
+    bundle all;
+    all.most = most_of(rays->count);
     for (int a = 0; a < 3; a++) {
         REAL least[2], most[2];
         const real along[2] = {rays->start[a] + ((REAL)0.5 - shift), rays->step[a]};
