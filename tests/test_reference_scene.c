@@ -212,14 +212,16 @@ static double below(int i)
     return -1000 - i % 3;
 }
 
-/* Air under the bone function: nothing shows, and blocks that show nothing are not fetched. */
+/* Air under the bone function: nothing shows, and where nothing shows nothing is fetched. (`block` lets rays that go
+ * together leave a block together alone, and here hardly any do.) */
 static void test_transparent(void **state)
 {
     (void)state;
     static const char *const machines[] = {"blend=over", "blend=mip"};
+    uint64_t all = 0; /* samples without skipping */
     for (int mip = 0; mip < 2; mip++)
-        for (int accel = REFERENCE_ACCEL_NONE; accel <= REFERENCE_ACCEL_BEST; accel++)
-            for (int method = REFERENCE_SLICES; method <= REFERENCE_RAYCAST; method++) {
+        for (int method = REFERENCE_SLICES; method <= REFERENCE_RAYCAST; method++)
+            for (int accel = REFERENCE_ACCEL_NONE; accel <= REFERENCE_ACCEL_BEST; accel++) {
                 reference_choice choice = choose((reference_method)method, REFERENCE_FLOAT);
                 vodr_frame frame;
                 reference_stats stats;
@@ -227,8 +229,10 @@ static void test_transparent(void **state)
                 draw(make_volume(VOLUME_INT16, 1, 0, below), "bone", machines[mip], &oblique, &choice, &frame, &stats);
                 assert_false(shows(&frame));
                 if (accel == REFERENCE_ACCEL_NONE)
-                    assert_true(stats.samples > 0);
-                else if (!mip)
+                    all = stats.samples;
+                assert_true(all > 0);
+                assert_true(mip || stats.samples <= all);
+                if (accel == REFERENCE_ACCEL_BEST && !mip)
                     assert_int_equal(stats.samples, 0);
                 vodr_frame_free(&frame);
             }
