@@ -153,6 +153,17 @@ static bool evicts(const cache_state *s, const cache_access *a)
     return a->replaces && s->dirty[a->at];
 }
 
+/* An access whose line has left: true when its pixel was read, false while its own line is on its way. */
+static bool fill_step(cache_state *s, cache_access *a, pixel_cache_out *out)
+{
+    if (a->reads && s->fills_come == s->fills_used) {
+        out->report.status = BLOCK_STALLED + VODR_STALL_FILL;
+        return false;
+    }
+    read_pixel(s, a, out);
+    return true;
+}
+
 /* A blocking cache: the one miss under way. True when it is over. */
 static bool miss_step(cache_state *s, cache_access *a, pixel_cache_out *out)
 {
@@ -169,12 +180,7 @@ static bool miss_step(cache_state *s, cache_access *a, pixel_cache_out *out)
         out->report.status = BLOCK_STALLED + VODR_STALL_FILL;
         return false;
     }
-    if (a->reads && s->fills_come == s->fills_used) {
-        out->report.status = BLOCK_STALLED + VODR_STALL_FILL;
-        return false;
-    }
-    read_pixel(s, a, out);
-    return true;
+    return fill_step(s, a, out);
 }
 
 /* A non-blocking cache: the oldest access. True when its pixel was read. */
@@ -194,12 +200,7 @@ static bool data_step(cache_state *s, cache_access *a, pixel_cache_out *out)
             return false;
         }
     }
-    if (a->reads && s->fills_come == s->fills_used) {
-        out->report.status = BLOCK_STALLED + VODR_STALL_FILL;
-        return false;
-    }
-    read_pixel(s, a, out);
-    return true;
+    return fill_step(s, a, out);
 }
 
 /* The flush: dirty lines leave one after the other. True when none is left. */

@@ -55,15 +55,15 @@ static cycle_access last_access(const pixel_cache *c, int64_t line, uint32_t wri
                           .evicts = c->missed && c->evicted_dirty};
 }
 
-/* Tells the clock of fragments that were just blended. */
-static void clock_run(pipeline *p, const span *s, int32_t from, int32_t to, int64_t line, uint32_t written)
+/* Tells the clock of pixels [x0, x1) of a row: all hit, but the first, of which `first` tells. */
+static void clock_pixels(pipeline *p, int32_t y, int32_t x0, int32_t x1, const cycle_access *first)
 {
-    const cycle_access access = last_access(&p->cache, line, written);
-    int32_t x = s->x0 + from, count = to - from;
-    if (!access.miss && !p->cache.through)
-        cycles_hits(p->clock, x, s->y, count, false);
+    if (!p->clock || x0 == x1)
+        return;
+    if (first->miss || p->cache.through)
+        cycles_run(p->clock, x0, y, x1 - x0, first);
     else
-        cycles_run(p->clock, x, s->y, count, &access);
+        cycles_hits(p->clock, x0, y, x1 - x0, false);
 }
 
 static void observe_miss(const pipeline *p, int32_t x, int32_t y)
@@ -101,8 +101,8 @@ static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32
     } else {
         written = written_by_marks(p, k, s->y, x, count);
     }
-    if (p->clock)
-        clock_run(p, s, from, to, line, written);
+    const cycle_access access = last_access(&p->cache, line, written);
+    clock_pixels(p, s->y, x, x + count, &access);
     if (!written)
         return;
     pixel_cache_written(&p->cache);
@@ -110,11 +110,11 @@ static void blend_run(pipeline *p, int32_t k, const span *s, int32_t from, int32
         frame_buffer_write_pixels(&p->memory, line, offset, pixels, count, count_bits(written));
 }
 
-/* Where the line ends that holds fragment `from` of a span, cut to the span. */
-static int32_t run_end(const pipeline *p, const span *s, int32_t from)
+/* Where the line ends that holds pixel x, cut to the span. */
+static inline int32_t run_end(int32_t line_w_bits, const span *s, int32_t x)
 {
-    int32_t bits = p->memory.layout.line_w_bits, end = (((s->x0 + from) >> bits) + 1) << bits;
-    return (end < s->x1 ? end : s->x1) - s->x0;
+    int32_t end = ((x >> line_w_bits) + 1) << line_w_bits;
+    return end < s->x1 ? end : s->x1;
 }
 
 static void shade_span(pipeline *p, const brick_slice *slice, const span *s)
@@ -151,17 +151,6 @@ static void blend_living(pipeline *p, int32_t k, const span *s, int32_t from, in
     }
 }
 
-/* Tells the clock of pixels [x0, x1): all hit, but where the first missed. */
-static void clock_pixels(pipeline *p, int32_t y, int32_t x0, int32_t x1, const cycle_access *first)
-{
-    if (!p->clock || x0 == x1)
-        return;
-    if (first->miss)
-        cycles_run(p->clock, x0, y, x1 - x0, first);
-    else
-        cycles_hits(p->clock, x0, y, x1 - x0, false);
-}
-
 /* Where nothing but lines matters: no picture, and each fragment writes its pixel back. */
 static void count_span(pipeline *p, const span *s)
 {
@@ -172,8 +161,7 @@ static void count_span(pipeline *p, const span *s)
     int32_t told_to = s->x0;
     for (int32_t x = s->x0, end; x < s->x1; x = end) {
         int64_t line = line_in_row(&layout, row, x);
-        end = ((x >> width_bits) + 1) << width_bits;
-        end = end < s->x1 ? end : s->x1;
+        end = run_end(width_bits, s, x);
         if (!pixel_cache_hit(&p->cache, line, end - x)) {
             clock_pixels(p, s->y, told_to, x, &first);
             pixel_cache_access(&p->cache, line, end - x);
@@ -200,7 +188,7 @@ static void draw_span(pipeline *p, const brick_slice *slice, const span *s)
     if (p->picture)
         shade_span(p, slice, s);
     for (int32_t from = 0, to; from < count; from = to) {
-        to = run_end(p, s, from);
+        to = run_end(p->memory.layout.line_w_bits, s, s->x0 + from) - s->x0;
         if (p->machine->kill_transparent)
             blend_living(p, slice->k, s, from, to);
         else
