@@ -119,8 +119,8 @@ static double time_sweep(char *vodr, char *shells, char *out)
     join("ways", ways, WAYS, w, sizeof w);
     join("line_px", lines, LINES, l, sizeof l);
     snprintf(orbit, sizeof orbit, "view=orbit:%d", VIEWS);
-    char sweep[] = "sweep", dims[] = "--dims", size[] = "64x64x64", over[] = "--over", output[] = "-o";
-    char *const argv[] = {vodr, sweep, shells, dims, size, over, c, over, w, over, l, over, orbit, output, out, NULL};
+    char sweep[] = "sweep", dims[] = "--dims", size[] = "64x64x64", over[] = "--over", to[] = "-o";
+    char *const argv[] = {vodr, sweep, shells, dims, size, over, c, over, w, over, l, over, orbit, to, out, NULL};
     posix_spawn_file_actions_t actions;
     pid_t child;
     int status = -1;

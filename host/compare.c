@@ -74,21 +74,18 @@ static void print_lines(const difference *d)
                d->first_b);
 }
 
+static host_status write_picture(void *context, output *o, host_error *error)
+{
+    return image_write_png(o, context, &(image_style){.alpha = false}, error);
+}
+
 static host_status write_diff(const char *path, const image *a, const image *b, host_error *error)
 {
     vodr_frame frame;
-    output o = {0};
     host_status status = difference_picture(a, b, &frame, error);
     if (status != HOST_OK)
         return status;
-    status = output_open(&o, path, error);
-    if (status == HOST_OK)
-        status = image_write_png(&o, &frame, &(image_style){.alpha = false}, error);
-    if (status == HOST_OK)
-        status = output_close(&o, error);
-    if (status == HOST_OK)
-        status = output_commit(&o, error);
-    output_discard(&o);
+    status = output_write(path, write_picture, &frame, error);
     free(frame.pixels);
     return status;
 }

@@ -19,6 +19,15 @@ typedef struct parser {
     uint64_t seen[OPTION_TABLES]; /* bit i: option i of the table was given */
 } parser;
 
+host_status option_word(const option *o, const char *value, const char *const *words, const char *form, int *index,
+                        host_error *error)
+{
+    for (*index = 0; words[*index]; (*index)++)
+        if (strcmp(value, words[*index]) == 0)
+            return HOST_OK;
+    return option_refuse(o, value, form, error);
+}
+
 host_status option_refuse(const option *o, const char *value, const char *form, host_error *error)
 {
     return host_fail(error, HOST_BAD_INPUT, "--%s '%s': must be %s", o->name, value, form);

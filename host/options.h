@@ -48,6 +48,10 @@ host_status options_parse(const command *c, int argc, char **argv, void *const *
 host_status options_quote(const command *c, int argc, char **argv, const char *const *without, char **quoted,
                           host_error *error);
 
+/* Which of the words, NULL after the last, a value is; refused in `form` where it is none of them. */
+host_status option_word(const option *o, const char *value, const char *const *words, const char *form, int *index,
+                        host_error *error);
+
 /* Fails with "--size '0x3': must be <form>". */
 host_status option_refuse(const option *o, const char *value, const char *form, host_error *error);
 

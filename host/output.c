@@ -156,3 +156,19 @@ void output_discard(output *o)
     free(o->path);
     *o = (output){0};
 }
+
+host_status output_write(const char *path, host_status (*write)(void *context, output *o, host_error *error),
+                         void *context, host_error *error)
+{
+    output o;
+    host_status status = output_open(&o, path, error);
+    if (status != HOST_OK)
+        return status;
+    status = write(context, &o, error);
+    if (status == HOST_OK)
+        status = output_close(&o, error);
+    if (status == HOST_OK)
+        status = output_commit(&o, error);
+    output_discard(&o);
+    return status;
+}

@@ -35,6 +35,10 @@ host_status output_close(output *o, host_error *error);
 /* Puts a closed output in its place. */
 host_status output_commit(output *o, host_error *error);
 
+/* A whole output: opened, filled by write(context, ...), closed, put in its place. */
+host_status output_write(const char *path, host_status (*write)(void *context, output *o, host_error *error),
+                         void *context, host_error *error);
+
 /* Frees everything, removes what was not committed. To be called after success too. */
 void output_discard(output *o);
 

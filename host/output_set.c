@@ -1,13 +1,27 @@
-/* output_set.c - the output files of a command: checked before long work, then written all or none. */
+/* output_set.c - options for output files, and the files of a drawing command. */
 #include "output_set.h"
 
 #include <string.h>
 
-void output_set_path(const output_set *s, const char *name, const char *path)
+#include "text.h"
+
+host_status output_set_path(void *target, const option *o, const char *value, host_error *error)
 {
+    output_set *s = target;
+    (void)error;
     for (int i = 0; i < s->count; i++)
-        if (strcmp(name, s->option[i]) == 0)
-            s->path[i] = path;
+        if (strcmp(o->name, s->option[i]) == 0)
+            s->path[i] = value;
+    return HOST_OK;
+}
+
+host_status output_set_repeat(void *target, const option *o, const char *value, host_error *error)
+{
+    int64_t repeat;
+    if (!text_integer(value, 1, 1000, &repeat))
+        return option_refuse(o, value, "an integer from 1 to 1000", error);
+    ((output_set *)target)->repeat = (int)repeat;
+    return HOST_OK;
 }
 
 host_status output_set_check(const output_set *s, const view_options *v, const char *input, host_error *error)

@@ -1,4 +1,5 @@
-/* output_set.h - the output files of a command: checked before long work, then written all or none. */
+/* output_set.h - what a drawing command leaves: output files, checked before long work and written all or none, and how
+ * often it draws. */
 #ifndef HOST_OUTPUT_SET_H
 #define HOST_OUTPUT_SET_H
 
@@ -7,15 +8,16 @@
 
 enum { OUTPUT_SET_MOST = 4 };
 
-/* A command's options for output files, and the paths given for them. */
 typedef struct output_set {
-    const char *const *option; /* their names */
-    int count;                 /* at most OUTPUT_SET_MOST */
-    const char **path;         /* NULL: not asked for */
+    const char *const *option;         /* names of the options for files */
+    int count;                         /* of them */
+    const char *path[OUTPUT_SET_MOST]; /* NULL: not asked for */
+    int repeat;
 } output_set;
 
-/* The path of the option of that name. */
-void output_set_path(const output_set *s, const char *name, const char *path);
+/* Set an option's path, and --repeat; `target` is an output_set. */
+host_status output_set_path(void *target, const option *o, const char *value, host_error *error);
+host_status output_set_repeat(void *target, const option *o, const char *value, host_error *error);
 
 /* Whether all can be written, no two to one file, and none over what is read: `input` and the files of the options. */
 host_status output_set_check(const output_set *s, const view_options *v, const char *input, host_error *error);

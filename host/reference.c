@@ -2,7 +2,6 @@
  * point, on the CPU or on a CUDA card. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "commands.h"
 #include "image.h"
@@ -19,39 +18,16 @@ static const char *const output_option[OUTPUTS] = {"output", "raw", "stats"};
 typedef struct command_options {
     view_options view;
     reference_wish wish;
-    const char *path[OUTPUTS]; /* NULL: not asked for */
-    int repeat;
+    output_set outputs;
 } command_options;
 
-static output_set outputs_of(command_options *options)
-{
-    return (output_set){output_option, OUTPUTS, options->path};
-}
-
-static host_status set_output(void *target, const option *o, const char *value, host_error *error)
-{
-    (void)error;
-    const output_set set = outputs_of(target);
-    output_set_path(&set, o->name, value);
-    return HOST_OK;
-}
-
-static host_status set_repeat(void *target, const option *o, const char *value, host_error *error)
-{
-    int64_t repeat;
-    if (!text_integer(value, 1, 1000, &repeat))
-        return option_refuse(o, value, "an integer from 1 to 1000", error);
-    ((command_options *)target)->repeat = (int)repeat;
-    return HOST_OK;
-}
-
 static const option rows[] = {
-    {"output", 'o', "OUT.png", false, set_output, "the picture, 8 or 16 bits a channel as fb_bits says"},
-    {"raw", 0, "OUT.rgba", false, set_output,
+    {"output", 'o', "OUT.png", false, output_set_path, "the picture, 8 or 16 bits a channel as fb_bits says"},
+    {"raw", 0, "OUT.rgba", false, output_set_path,
      "the frame: rows top to bottom, premultiplied RGBA, 8 bits,\n"
      "or 16 bits little endian"},
-    {"stats", 0, "OUT.json", false, set_output, "samples, times, the frame's hash"},
-    {"repeat", 0, "N", false, set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
+    {"stats", 0, "OUT.json", false, output_set_path, "samples, times, the frame's hash"},
+    {"repeat", 0, "N", false, output_set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
 };
 static const option_table table = {"Output (none is required):", rows, sizeof rows / sizeof *rows};
 
@@ -113,10 +89,8 @@ static host_status write_one(void *context, int i, output *o, host_error *error)
 {
     const drawn *d = context;
     const view_options *v = &d->options->view;
-    image_style style = {.alpha = v->alpha};
-    memcpy(style.background, v->background, sizeof style.background);
     switch (i) {
-    case PNG: return image_write_png(o, &d->result->frame, &style, error);
+    case PNG: return image_write_png(o, &d->result->frame, &v->style, error);
     case RAW: return image_write_raw(o, &d->result->frame, error);
     default: return reference_stats_write(o, d->scene, v, &d->options->wish.choice, d->result, error);
     }
@@ -125,9 +99,7 @@ static host_status write_one(void *context, int i, output *o, host_error *error)
 static void print_summary(const command_options *options, const scene *s, const reference_result *r)
 {
     const reference_choice *c = &options->wish.choice;
-    printf("volume             %s, %dx%dx%d %s\n", s->volume.path, s->volume.dims_vox[0], s->volume.dims_vox[1],
-           s->volume.dims_vox[2], volume_type_name(s->volume.type));
-    printf("window, function   %g:%g, %s\n", s->window_lo, s->window_hi, s->transfer.name);
+    scene_print_volume(s);
     printf("frame              %dx%d pixels, ", s->view.width_px, s->view.height_px);
     if (c->method == REFERENCE_RAYCAST)
         printf("rays of a sample every %g voxels\n", c->step_vox);
@@ -144,22 +116,21 @@ static void print_summary(const command_options *options, const scene *s, const 
 static host_status draw_and_write(const char *path, command_options *options, host_error *error)
 {
     scene s;
-    reference_result r = {.repeat = options->repeat};
-    const output_set outputs = outputs_of(options);
+    reference_result r = {.repeat = options->outputs.repeat};
     host_status status = reference_wish_settle(&options->wish, &options->view, error);
     if (status == HOST_OK)
-        status = output_set_check(&outputs, &options->view, path, error);
+        status = output_set_check(&options->outputs, &options->view, path, error);
     if (status == HOST_OK)
         status = scene_open_stored(path, &options->view, &s, error);
     if (status != HOST_OK)
         return status;
     status = draw_scene(&s, options, &r, error);
-    bool summary = !output_set_takes_stdout(&outputs);
+    bool summary = !output_set_takes_stdout(&options->outputs);
     if (status == HOST_OK)
-        status = output_set_write(&outputs, write_one, &(drawn){options, &s, &r}, error);
+        status = output_set_write(&options->outputs, write_one, &(drawn){options, &s, &r}, error);
     if (status == HOST_OK && summary) {
         print_summary(options, &s, &r);
-        output_set_print(&outputs);
+        output_set_print(&options->outputs);
     }
     vodr_frame_free(&r.frame);
     scene_close(&s);
@@ -168,9 +139,11 @@ static host_status draw_and_write(const char *path, command_options *options, ho
 
 static host_status run(int argc, char **argv, host_error *error)
 {
-    command_options options = {.view = view_options_default(), .wish = reference_wish_default(), .repeat = 1};
-    void *const targets[] = {&options,      &options.wish,        &options.view,
-                             &options.view, &options.view.volume, &options.view};
+    command_options options = {.view = view_options_default(),
+                               .wish = reference_wish_default(),
+                               .outputs = {.option = output_option, .count = OUTPUTS, .repeat = 1}};
+    void *const targets[] = {&options.outputs, &options.wish,        &options.view,
+                             &options.view,    &options.view.volume, &options.view};
     const char *operands[OPTION_OPERANDS];
     bool help;
     host_status status = options_parse(&command_reference, argc, argv, targets, operands, &help, error);

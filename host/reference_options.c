@@ -1,8 +1,6 @@
 /* reference_options.c - the options of `vodr reference` beyond the view, and which of them go together. */
 #include "reference_options.h"
 
-#include <string.h>
-
 #include "text.h"
 
 enum { FIXED = REFERENCE_TEXTURE + 1 }; /* of --numbers, behind those of floating point */
@@ -18,20 +16,10 @@ static const char *const accels[] = {
     [REFERENCE_ACCEL_NONE] = "none", [REFERENCE_ACCEL_BLOCK] = "block", [REFERENCE_ACCEL_BEST] = "best", NULL};
 static const char *const shadings[] = {[REFERENCE_UNLIT] = "none", [REFERENCE_PHONG] = "phong", NULL};
 
-/* The index of the value among the words; refused in `form` where it is none of them. */
-static host_status find(const option *o, const char *value, const char *const *words, const char *form, int *index,
-                        host_error *error)
-{
-    for (*index = 0; words[*index]; (*index)++)
-        if (strcmp(value, words[*index]) == 0)
-            return HOST_OK;
-    return option_refuse(o, value, form, error);
-}
-
 static host_status set_device(void *target, const option *o, const char *value, host_error *error)
 {
     int i;
-    host_status status = find(o, value, devices, "cpu or cuda", &i, error);
+    host_status status = option_word(o, value, devices, "cpu or cuda", &i, error);
     if (status == HOST_OK)
         ((reference_wish *)target)->choice.device = (reference_device)i;
     return status;
@@ -40,7 +28,7 @@ static host_status set_device(void *target, const option *o, const char *value, 
 static host_status set_method(void *target, const option *o, const char *value, host_error *error)
 {
     int i;
-    host_status status = find(o, value, methods, "slices or raycast", &i, error);
+    host_status status = option_word(o, value, methods, "slices or raycast", &i, error);
     if (status == HOST_OK)
         ((reference_wish *)target)->choice.method = (reference_method)i;
     return status;
@@ -50,7 +38,7 @@ static host_status set_numbers(void *target, const option *o, const char *value,
 {
     int i;
     reference_choice *c = &((reference_wish *)target)->choice;
-    host_status status = find(o, value, numbers, "fixed, float, double or texture", &i, error);
+    host_status status = option_word(o, value, numbers, "fixed, float, double or texture", &i, error);
     if (status != HOST_OK)
         return status;
     c->fixed = i == FIXED;
@@ -62,7 +50,7 @@ static host_status set_accel(void *target, const option *o, const char *value, h
 {
     int i;
     reference_wish *w = target;
-    host_status status = find(o, value, accels, "none, block or best", &i, error);
+    host_status status = option_word(o, value, accels, "none, block or best", &i, error);
     if (status != HOST_OK)
         return status;
     w->choice.accel = (reference_accel)i;
@@ -74,7 +62,7 @@ static host_status set_shading(void *target, const option *o, const char *value,
 {
     int i;
     reference_wish *w = target;
-    host_status status = find(o, value, shadings, "none or phong", &i, error);
+    host_status status = option_word(o, value, shadings, "none or phong", &i, error);
     if (status != HOST_OK)
         return status;
     w->choice.shading = (reference_shading)i;

@@ -1,6 +1,5 @@
 /* render.c - `vodr render`: a volume through the machine into a picture, its statistics, and the machine's inputs. */
 #include <stdio.h>
-#include <string.h>
 
 #include "commands.h"
 #include "cycle_stats.h"
@@ -18,40 +17,17 @@ static const char *const output_option[OUTPUTS] = {"output", "raw", "stats", "re
 
 typedef struct render_options {
     view_options view;
-    const char *path[OUTPUTS]; /* NULL: not asked for */
-    int repeat;
+    output_set outputs;
 } render_options;
 
-static output_set outputs_of(render_options *options)
-{
-    return (output_set){output_option, OUTPUTS, options->path};
-}
-
-static host_status set_output(void *target, const option *o, const char *value, host_error *error)
-{
-    (void)error;
-    const output_set set = outputs_of(target);
-    output_set_path(&set, o->name, value);
-    return HOST_OK;
-}
-
-static host_status set_repeat(void *target, const option *o, const char *value, host_error *error)
-{
-    int64_t repeat;
-    if (!text_integer(value, 1, 1000, &repeat))
-        return option_refuse(o, value, "an integer from 1 to 1000", error);
-    ((render_options *)target)->repeat = (int)repeat;
-    return HOST_OK;
-}
-
 static const option rows[] = {
-    {"output", 'o', "OUT.png", false, set_output, "the picture, 8 or 16 bits a channel as fb_bits says"},
-    {"raw", 0, "OUT.rgba", false, set_output,
+    {"output", 'o', "OUT.png", false, output_set_path, "the picture, 8 or 16 bits a channel as fb_bits says"},
+    {"raw", 0, "OUT.rgba", false, output_set_path,
      "the frame: rows top to bottom, premultiplied RGBA, 8 bits,\n"
      "or 16 bits little endian"},
-    {"stats", 0, "OUT.json", false, set_output, "what the machine counted"},
-    {"registers", 0, "OUT.json", false, set_output, "what the machine was given: registers, parameters, table"},
-    {"repeat", 0, "N", false, set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
+    {"stats", 0, "OUT.json", false, output_set_path, "what the machine counted"},
+    {"registers", 0, "OUT.json", false, output_set_path, "what the machine was given: registers, parameters, table"},
+    {"repeat", 0, "N", false, output_set_repeat, "draw N times, 1 to 1000, and report the median time (1)"},
 };
 static const option_table table = {"Output (none is required):", rows, sizeof rows / sizeof *rows};
 
@@ -67,10 +43,8 @@ static host_status write_one(void *context, int i, output *o, host_error *error)
 {
     const drawn *d = context;
     const view_options *v = &d->options->view;
-    image_style style = {.alpha = v->alpha};
-    memcpy(style.background, v->background, sizeof style.background);
     switch (i) {
-    case PNG: return image_write_png(o, &d->result->frame, &style, error);
+    case PNG: return image_write_png(o, &d->result->frame, &v->style, error);
     case RAW: return image_write_raw(o, &d->result->frame, error);
     case STATS: return stats_write(o, d->scene, v, d->result, error);
     default: return registers_write(o, d->scene, v, error);
@@ -93,9 +67,7 @@ static void print_summary(const render_options *options, const scene *s, const r
     char rate[48] = "";
     if (c->hits + c->misses)
         snprintf(rate, sizeof rate, "  (hit rate %.4f %%)", 100 * stats_hit_rate(c));
-    printf("volume             %s, %dx%dx%d %s\n", s->volume.path, s->volume.dims_vox[0], s->volume.dims_vox[1],
-           s->volume.dims_vox[2], volume_type_name(s->volume.type));
-    printf("window, function   %g:%g, %s\n", s->window_lo, s->window_hi, s->transfer.name);
+    scene_print_volume(s);
     printf("frame              %dx%d pixels of %d slices, machine %s\n", s->view.width_px, s->view.height_px,
            s->view.slices, s->machine_name);
     text_print_count("fragments", c->fragments, "");
@@ -123,20 +95,19 @@ static host_status render(const char *path, render_options *options, host_error 
                         .path = v->path,
                         .simd = v->simd,
                         .cycles = v->cycles,
-                        .repeat = options->repeat};
-    const output_set outputs = outputs_of(options);
-    host_status status = output_set_check(&outputs, v, path, error);
+                        .repeat = options->outputs.repeat};
+    host_status status = output_set_check(&options->outputs, v, path, error);
     if (status == HOST_OK)
         status = scene_open(path, &options->view, &s, error);
     if (status != HOST_OK)
         return status;
     status = draw(&s, &s.machine, &how, &r, error);
-    bool summary = !output_set_takes_stdout(&outputs);
+    bool summary = !output_set_takes_stdout(&options->outputs);
     if (status == HOST_OK)
-        status = output_set_write(&outputs, write_one, &(drawn){options, &s, &r}, error);
+        status = output_set_write(&options->outputs, write_one, &(drawn){options, &s, &r}, error);
     if (status == HOST_OK && summary) {
         print_summary(options, &s, &r);
-        output_set_print(&outputs);
+        output_set_print(&options->outputs);
     }
     vodr_frame_free(&r.frame);
     scene_close(&s);
@@ -145,8 +116,9 @@ static host_status render(const char *path, render_options *options, host_error 
 
 static host_status run(int argc, char **argv, host_error *error)
 {
-    render_options options = {.view = view_options_default(), .repeat = 1};
-    void *const targets[] = {&options, &options.view, &options.view, &options.view.volume, &options.view};
+    render_options options = {.view = view_options_default(),
+                              .outputs = {.option = output_option, .count = OUTPUTS, .repeat = 1}};
+    void *const targets[] = {&options.outputs, &options.view, &options.view, &options.view.volume, &options.view};
     const char *operands[OPTION_OPERANDS];
     bool help;
     host_status status = options_parse(&command_render, argc, argv, targets, operands, &help, error);

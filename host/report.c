@@ -74,19 +74,9 @@ static host_status draw_peer(const scene *s, const report_options *options, cons
     return status;
 }
 
-static host_status write_page(const report_options *options, const report *r, host_error *error)
+static host_status write_page(void *context, output *o, host_error *error)
 {
-    output o;
-    host_status status = output_open(&o, options->path, error);
-    if (status != HOST_OK)
-        return status;
-    status = report_page_write(&o, r, error);
-    if (status == HOST_OK)
-        status = output_close(&o, error);
-    if (status == HOST_OK)
-        status = output_commit(&o, error);
-    output_discard(&o);
-    return status;
+    return report_page_write(o, context, error);
 }
 
 static host_status draw_all(const scene *s, const report_options *options, report_trace *trace, host_error *error)
@@ -98,10 +88,10 @@ static host_status draw_all(const scene *s, const report_options *options, repor
     host_status status = draw(s, &s->machine, &how, &own, error);
     for (int i = 0; status == HOST_OK && i < REPORT_PEERS; i++)
         status = draw_peer(s, options, &own, &peers[i], error);
-    const report r = {s, &options->view, &own, trace, peers, options->command};
+    report r = {s, &options->view, &own, trace, peers, options->command};
     bool quiet = output_is_stdout(options->path);
     if (status == HOST_OK)
-        status = write_page(options, &r, error);
+        status = output_write(options->path, write_page, &r, error);
     if (status == HOST_OK && !quiet)
         printf("written            %s\n", options->path);
     vodr_frame_free(&own.frame);

@@ -108,14 +108,12 @@ static void write_base64(FILE *file, const unsigned char *bytes, size_t count)
 
 static host_status write_picture(output *o, const report *r, host_error *error)
 {
-    image_style style = {.alpha = r->options->alpha};
-    memcpy(style.background, r->options->background, sizeof style.background);
     char *bytes = NULL;
     size_t count = 0;
     output memory = {.path = o->path, .file = open_memstream(&bytes, &count)};
     if (!memory.file)
         return host_fail(error, HOST_ENVIRONMENT, "no memory for the picture in '%s'", o->path);
-    host_status status = image_write_png(&memory, &r->result->frame, &style, error);
+    host_status status = image_write_png(&memory, &r->result->frame, &r->options->style, error);
     if (fclose(memory.file) != 0 && status == HOST_OK)
         status = host_fail(error, HOST_ENVIRONMENT, "no memory for the picture in '%s'", o->path);
     if (status == HOST_OK) {

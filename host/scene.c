@@ -1,6 +1,7 @@
 /* scene.c - everything a frame is drawn from, made from the shared options: machine, volume, table, registers. */
 #include "scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 void scene_window(const view_options *o, const transfer *t, bool ct, double min, double max, double *lo, double *hi)
@@ -80,4 +81,12 @@ void scene_close(scene *s)
     free(s->entries);
     transfer_close(&s->transfer);
     volume_close(&s->volume);
+}
+
+void scene_print_volume(const scene *s)
+{
+    const volume *v = &s->volume;
+    printf("volume             %s, %dx%dx%d %s\n", v->path, v->dims_vox[0], v->dims_vox[1], v->dims_vox[2],
+           volume_type_name(v->type));
+    printf("window, function   %g:%g, %s\n", s->window_lo, s->window_hi, s->transfer.name);
 }

@@ -35,6 +35,9 @@ host_status scene_open_stored(const char *path, const view_options *options, sce
 /* Makes those of a scene opened by scene_open_stored(). */
 host_status scene_quantise(scene *s, host_error *error);
 
+/* The first lines of a summary: the volume, its window and transfer function. */
+void scene_print_volume(const scene *s);
+
 /* The window: as given, else the transfer function's own for a CT in Hounsfield units, else the data's range. */
 void scene_window(const view_options *o, const transfer *t, bool ct, double min, double max, double *lo, double *hi);
 

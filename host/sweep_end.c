@@ -132,35 +132,26 @@ static void put_row(FILE *file, char *line, const bool *mark)
     putc('\n', file);
 }
 
-/* `objective` is the line's text as it is to be. */
-static host_status write_all(FILE *file, const sweep_file *f, const sweep_rows *r, const char *objective, bool marked,
-                             host_error *error)
+typedef struct replacement {
+    const sweep_file *file;
+    const sweep_rows *rows;
+    const char *objective; /* the line's text as it is to be */
+    bool marked;
+} replacement;
+
+static host_status write_all(void *context, output *o, host_error *error)
 {
-    reader in = {.file = f};
+    const replacement *r = context;
+    reader in = {.file = r->file};
     off_t next;
     host_status status = HOST_OK;
-    fprintf(file, "%s%s\n%s", f->head, objective, f->columns);
-    for (uint64_t i = 0; status == HOST_OK && i < r->count; i++) {
-        status = read_line(&in, r->at[i], &next, error);
+    fprintf(o->file, "%s%s\n%s", r->file->head, r->objective, r->file->columns);
+    for (uint64_t i = 0; status == HOST_OK && i < r->rows->count; i++) {
+        status = read_line(&in, r->rows->at[i], &next, error);
         if (status == HOST_OK)
-            put_row(file, in.line, marked ? &r->marks[i] : NULL);
+            put_row(o->file, in.line, r->marked ? &r->rows->marks[i] : NULL);
     }
     free(in.line);
-    return status;
-}
-
-static host_status replace(const sweep_file *f, const sweep_rows *r, const char *objective, bool marked,
-                           host_error *error)
-{
-    output o;
-    host_status status = output_open(&o, f->path, error);
-    if (status == HOST_OK)
-        status = write_all(o.file, f, r, objective, marked, error);
-    if (status == HOST_OK)
-        status = output_close(&o, error);
-    if (status == HOST_OK)
-        status = output_commit(&o, error);
-    output_discard(&o);
     return status;
 }
 
@@ -176,7 +167,8 @@ host_status sweep_end(const sweep_file *f, const sweep_rows *r, const char *obje
         if (n >= (int)sizeof line)
             status = host_fail(error, HOST_BAD_INPUT, "--objective is longer than %zu characters", sizeof line);
         else if (changed || !r->in_order)
-            status = replace(f, r, objective ? line : in.line, objective != NULL, error);
+            status = output_write(f->path, write_all,
+                                  &(replacement){f, r, objective ? line : in.line, objective != NULL}, error);
     }
     free(in.line);
     return status;

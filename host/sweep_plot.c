@@ -133,10 +133,14 @@ host_status sweep_plot_prepare(sweep_plot *p, const sweep_plan *plan, const swee
     return status == HOST_OK ? gnuplot_check(error) : status;
 }
 
+static host_status draw(void *script, output *o, host_error *error)
+{
+    return gnuplot_run(script, o->file, error);
+}
+
 host_status sweep_plot_write(const sweep_plot *p, const sweep_plan *plan, const sweep_columns *c,
                              const sweep_objectives *o, const sweep_rows *r, host_error *error)
 {
-    output out;
     FILE *script = tmpfile();
     if (!script)
         return host_fail(error, HOST_ENVIRONMENT, "cannot write a file for gnuplot: %s", strerror(errno));
@@ -144,15 +148,7 @@ host_status sweep_plot_write(const sweep_plot *p, const sweep_plan *plan, const 
     if (status == HOST_OK && fflush(script) != 0)
         status = host_fail(error, HOST_ENVIRONMENT, "cannot write a file for gnuplot: %s", strerror(errno));
     if (status == HOST_OK)
-        status = output_open(&out, p->path, error);
-    if (status == HOST_OK) {
-        status = gnuplot_run(script, out.file, error);
-        if (status == HOST_OK)
-            status = output_close(&out, error);
-        if (status == HOST_OK)
-            status = output_commit(&out, error);
-        output_discard(&out);
-    }
+        status = output_write(p->path, draw, script, error);
     fclose(script);
     return status;
 }

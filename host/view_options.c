@@ -92,24 +92,15 @@ static host_status set_threads(void *target, const option *o, const char *value,
     return HOST_OK;
 }
 
-/* The index of `value` among `count` words; -1: it is none of them. */
-static int find_word(const char *value, const char *const *words, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (strcmp(value, words[i]) == 0)
-            return i;
-    return -1;
-}
-
 static host_status set_path(void *target, const option *o, const char *value, host_error *error)
 {
     static const char *const words[] = {
-        [VODR_PATH_FAST] = "fast", [VODR_PATH_BLOCKS] = "blocks", [VODR_PATH_CLOCKED] = "clocked"};
-    int path = find_word(value, words, COUNT(words));
-    if (path < 0)
-        return option_refuse(o, value, "fast, blocks or clocked", error);
-    ((view_options *)target)->path = (vodr_path)path;
-    return HOST_OK;
+        [VODR_PATH_FAST] = "fast", [VODR_PATH_BLOCKS] = "blocks", [VODR_PATH_CLOCKED] = "clocked", NULL};
+    int path;
+    host_status status = option_word(o, value, words, "fast, blocks or clocked", &path, error);
+    if (status == HOST_OK)
+        ((view_options *)target)->path = (vodr_path)path;
+    return status;
 }
 
 static host_status set_cycles(void *target, const option *o, const char *value, host_error *error)
@@ -124,12 +115,13 @@ static host_status set_simd(void *target, const option *o, const char *value, ho
     static const char *const words[] = {[VODR_SIMD_BEST] = "best",
                                         [VODR_SIMD_PORTABLE] = "portable",
                                         [VODR_SIMD_AVX2] = "avx2",
-                                        [VODR_SIMD_AVX512] = "avx512"};
-    int simd = find_word(value, words, COUNT(words));
-    if (simd < 0)
-        return option_refuse(o, value, "best, portable, avx2 or avx512", error);
-    ((view_options *)target)->simd = (vodr_simd)simd;
-    return HOST_OK;
+                                        [VODR_SIMD_AVX512] = "avx512",
+                                        NULL};
+    int simd;
+    host_status status = option_word(o, value, words, "best, portable, avx2 or avx512", &simd, error);
+    if (status == HOST_OK)
+        ((view_options *)target)->simd = (vodr_simd)simd;
+    return status;
 }
 
 static host_status set_machine(void *target, const option *o, const char *value, host_error *error)
@@ -177,7 +169,7 @@ static host_status set_energy(void *target, const option *o, const char *value, 
 
 static host_status set_background(void *target, const option *o, const char *value, host_error *error)
 {
-    uint8_t *background = ((view_options *)target)->background;
+    uint8_t *background = ((view_options *)target)->style.background;
     if (strlen(value) != 6 || strspn(value, "0123456789abcdefABCDEF") != 6)
         return option_refuse(o, value, "RRGGBB, six hexadecimal digits", error);
     unsigned long rgb = strtoul(value, NULL, 16);
@@ -189,7 +181,7 @@ static host_status set_background(void *target, const option *o, const char *val
 static host_status set_alpha(void *target, const option *o, const char *value, host_error *error)
 {
     (void)o, (void)value, (void)error;
-    ((view_options *)target)->alpha = true;
+    ((view_options *)target)->style.alpha = true;
     return HOST_OK;
 }
 

@@ -3,6 +3,7 @@
 #define HOST_VIEW_OPTIONS_H
 
 #include "camera.h"
+#include "image.h"
 #include "options.h"
 #include "vodr.h"
 #include "volume.h"
@@ -29,8 +30,7 @@ typedef struct view_options {
     vodr_path path;
     vodr_simd simd;
     bool cycles; /* count cycles too */
-    uint8_t background[3];
-    bool alpha;
+    image_style style;
 } view_options;
 
 /* Each takes a view_options as its target, except option_volume, which takes a volume_options. */
