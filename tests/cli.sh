@@ -3,75 +3,10 @@
 #   tests/cli.sh VODR    a line a check, then "N passed, N failed"; exit 1 when any failed
 set -u
 
-if [ $# -ne 1 ] || [ ! -x "$1" ]; then
-    echo "usage: tests/cli.sh VODR (a program that can be run)" >&2
-    exit 2
-fi
-vodr=$(CDPATH='' cd "$(dirname "$1")" && pwd)/$(basename "$1")
-root=$(CDPATH='' cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d "${TMPDIR:-/tmp}/vodr-cli-XXXXXX")
-trap 'rm -rf "$work"' EXIT
-trap 'exit 1' HUP INT TERM
-cd "$work" || exit 1
-passed=0
-failed=0
+# shellcheck source=tests/lib/checks.sh
+. "$(dirname "$0")/lib/checks.sh"
+begin_checks "$0" "$@"
 
-verdict() { # NAME PROBLEM: an empty PROBLEM is a pass
-    if [ -z "$2" ]; then
-        passed=$((passed + 1))
-        echo "ok   $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL $1: $2"
-    fi
-}
-
-# good NAME COMMAND...: exit 0, nothing on standard error, standard output in ../out
-good() {
-    name=$1
-    shift
-    "$@" >../out-$$ 2>../err-$$
-    code=$?
-    problem=
-    [ $code -eq 0 ] || problem="exit code $code"
-    [ -s ../err-$$ ] && problem="$problem, said: $(cat ../err-$$)"
-    verdict "$name" "$problem"
-}
-
-# bad CODE WORDS COMMAND...: that exit code, one line on standard error that begins with `vodr: ` and holds WORDS,
-# nothing on standard output, no file made, changed or left behind
-bad() {
-    want=$1
-    words=$2
-    shift 2
-    before=$(ls -lA --full-time)
-    "$@" >../out-$$ 2>../err-$$
-    code=$?
-    problem=
-    [ $code -eq "$want" ] || problem="exit code $code, not $want"
-    [ "$(wc -l <../err-$$)" -eq 1 ] || problem="$problem, $(wc -l <../err-$$) lines on standard error"
-    grep -q '^vodr: ' ../err-$$ || problem="$problem, the line does not begin with vodr:"
-    grep -qF -e "$words" ../err-$$ || problem="$problem, it does not say '$words': $(cat ../err-$$)"
-    [ -s ../out-$$ ] && problem="$problem, something on standard output"
-    [ "$before" = "$(ls -lA --full-time)" ] || problem="$problem, the files changed"
-    shift
-    verdict "refused: $*" "$problem"
-}
-
-expect() { # NAME PATTERN FILE
-    problem=
-    grep -q -e "$2" "$3" || problem="no line of $3 matches $2"
-    verdict "$1" "$problem"
-}
-
-same() { # NAME A B
-    problem=
-    cmp -s "$2" "$3" || problem="$2 and $3 differ"
-    verdict "$1" "$problem"
-}
-
-# Files are judged in a directory of their own; what the checks themselves write lies beside it.
-mkdir here && cd here || exit 1
 i=0
 while [ $i -lt 64 ]; do
     printf '\000\020\040\100\200\300\377\177\010\030\050\110\210\310\350\170'
@@ -82,25 +17,25 @@ raw="v.raw --dims 16x8x8"
 # ---- help and version ----
 good "vodr --help" "$vodr" --help
 for command in render reference compare machine info sweep; do
-    expect "vodr --help names $command" "^  $command " ../out-$$
+    expect "vodr --help names $command" "^  $command " ../out
 done
 good "vodr --version" "$vodr" --version
-expect "vodr --version" '^vodr [0-9]' ../out-$$
+expect "vodr --version" '^vodr [0-9]' ../out
 for command in reference compare machine info sweep; do
     good "vodr $command --help" "$vodr" $command --help
-    expect "vodr $command --help has an example" '^Example' ../out-$$
+    expect "vodr $command --help has an example" '^Example' ../out
 done
 good "vodr render --help" "$vodr" render --help
 for option in output machine set tf window view projection zoom size slices crop blend filter traversal threads path cycles repeat \
     stats raw registers background alpha no-orient dims type spacing endian; do
-    expect "vodr render --help explains --$option" "--$option" ../out-$$
+    expect "vodr render --help explains --$option" "--$option" ../out
 done
 
 # ---- what works ----
 # shellcheck disable=SC2086
 {
     good "render with nothing to write" "$vodr" render $raw
-    expect "the summary counts 1024 fragments" 'fragments  *1,024' ../out-$$
+    expect "the summary counts 1024 fragments" 'fragments  *1,024' ../out
     good "render, all outputs" "$vodr" render $raw -o a.png --raw a.rgba --stats a.json --registers r.json
     expect "stats: schema" '"schema": "vodr-stats-1"' a.json
     expect "stats: fragments" '"fragments": 1024' a.json
@@ -133,10 +68,10 @@ done
     good "options may end with --" "$vodr" render --dims 16x8x8 -- v.raw
     good "outputs to devices" "$vodr" render $raw -o /dev/null --raw /dev/null
     good "stats to standard output" "$vodr" render $raw --stats /dev/stdout
-    expect "nothing but JSON there" '^{$' ../out-$$
-    verdict "it is JSON from its first line on" "$([ "$(head -n 1 ../out-$$)" = "{" ] || head -n 1 ../out-$$)"
+    expect "nothing but JSON there" '^{$' ../out
+    verdict "it is JSON from its first line on" "$([ "$(head -n 1 ../out)" = "{" ] || head -n 1 ../out)"
     good "machine show" "$vodr" machine show paper-16
-    cp ../out-$$ mine.txt
+    cp ../out mine.txt
     good "machine show gives a machine file" "$vodr" render $raw --machine mine.txt --raw h.rgba
     same "that draws the same" a.rgba h.rgba
     printf '0 1 0 0 0\n255 1 1 1 0.5 \n' >tf.txt
@@ -163,8 +98,8 @@ unbalanced() { # FILE
 for machine in 'paper-16' 'paper-16 --set nonblocking=1' 'paper-general --set memory=dram' 'paper-32 --traversal tile'; do
     how="$raw --crop 0:12,0:8,0:6 --view -30,20 --machine $machine --cycles --set brick=4"
     good "--cycles: $machine" "$vodr" render $how --stats fast.json
-    expect "the summary counts cycles" '^cycles  *[0-9,]*  ([0-9.]* a fragment)$' ../out-$$
-    expect "and names the bottleneck" '^bottleneck  *[a-z]' ../out-$$
+    expect "the summary counts cycles" '^cycles  *[0-9,]*  ([0-9.]* a fragment)$' ../out
+    expect "and names the bottleneck" '^bottleneck  *[a-z]' ../out
     good "--path blocks" "$vodr" render $how --path blocks --stats blocks.json
     good "--path clocked" "$vodr" render $how --path clocked --stats clocked.json
     verdict "every block's cycles add up to the total" "$(unbalanced fast.json)"
@@ -187,13 +122,13 @@ done
 }
 rm -f ./*.stats missing
 good "machine list" "$vodr" machine list
-expect "machine list has paper-32" '^paper-32 ' ../out-$$
+expect "machine list has paper-32" '^paper-32 ' ../out
 
 # ---- reference ----
 # shellcheck disable=SC2086
 {
     good "reference with nothing to write" "$vodr" reference $raw
-    expect "the summary counts 1024 samples of those slices" 'samples  *[0-9]' ../out-$$
+    expect "the summary counts 1024 samples of those slices" 'samples  *[0-9]' ../out
     for how in '' '--blend mip --set density_bits=8 --size 9x7' '--blend under --filter nearest --projection perspective:70' \
         '--set fb_bits=16 --set tf_bits=16 --window 20:180 --slices 5 --tf bone'; do
         good "render $how" "$vodr" render $raw --view -30,20 $how --raw m.rgba
@@ -245,12 +180,12 @@ expect "machine list has paper-32" '^paper-32 ' ../out-$$
 # ---- compare ----
 good "compare, equal" "$vodr" compare a.png a.png
 good "compare --json, equal" "$vodr" compare a.png a.png --json
-expect "psnr is null" '"psnr": null' ../out-$$
-expect "first_difference is null" '"first_difference": null' ../out-$$
-"$vodr" compare a.png b.png --json --diff diff.png >../out-$$ 2>../err-$$
+expect "psnr is null" '"psnr": null' ../out
+expect "first_difference is null" '"first_difference": null' ../out
+"$vodr" compare a.png b.png --json --diff diff.png >../out 2>../err
 verdict "compare, different: exit code 1" "$([ $? -eq 1 ] || echo "it is another")"
-verdict "compare, different: silent on standard error" "$(cat ../err-$$)"
-expect "first_difference has a channel" '"channel": "[rgba]"' ../out-$$
+verdict "compare, different: silent on standard error" "$(cat ../err)"
+expect "first_difference has a channel" '"channel": "[rgba]"' ../out
 verdict "--diff writes a picture" "$([ -s diff.png ] || echo "it does not")"
 good "compare within the tolerance" "$vodr" compare a.png b.png --tolerance 255
 bad 2 "16x8 pixels but 'f.png' is 20x10" "$vodr" compare a.png f.png --diff no.png
@@ -338,7 +273,7 @@ nrrd" -o no.png
     printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n77777777' >same.nrrd
     bad 2 "--spacing: along y it is 2" "$vodr" render same.nrrd -o no.png --spacing 1,2,1
     good "info of voxels that are all alike" "$vodr" info same.nrrd
-    expect "it suggests no window that would be refused" '^suggested *--tf ramp$' ../out-$$
+    expect "it suggests no window that would be refused" '^suggested *--tf ramp$' ../out
     bad 2 "at zoom 0.01 and 16384x16384 pixels" "$vodr" render $raw -o no.png --zoom 0.01 --size 16384x16384
 
     # ---- unwritable output ----
@@ -363,9 +298,7 @@ nrrd" -o no.png
     bad 3 "'b.rgba'" limited "$vodr" render $raw --size 100x100 -o no.png --raw b.rgba
     bad 3 "'no.json'" limited "$vodr" render $raw -o b.png --registers no.json
 }
-"$vodr" --help >/dev/full 2>../err-$$
+"$vodr" --help >/dev/full 2>../err
 verdict "standard output is full: exit code 3" "$([ $? -eq 3 ] || echo "it is another")"
 
-rm -f ../out-$$ ../err-$$
-echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+end_checks

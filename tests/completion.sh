@@ -3,24 +3,15 @@
 #   tests/completion.sh VODR    a line a check, then "N passed, N failed"; exit 1 when any failed
 set -u
 
-if [ $# -ne 1 ] || [ ! -x "$1" ]; then
-    echo "usage: tests/completion.sh VODR (a program that can be run)" >&2
-    exit 2
-fi
-vodr=$(CDPATH='' cd "$(dirname "$1")" && pwd)/$(basename "$1")
-root=$(CDPATH='' cd "$(dirname "$0")/.." && pwd)
-passed=0
-failed=0
+# shellcheck source=tests/lib/checks.sh
+. "$(dirname "$0")/lib/checks.sh"
+begin_checks "$0" "$@"
 
 if ! command -v bash >/dev/null; then
     echo 'skip completion: bash is not installed'
     echo '0 passed, 0 failed'
     exit 0
 fi
-work=$(mktemp -d "${TMPDIR:-/tmp}/vodr-completion-XXXXXX")
-trap 'rm -rf "$work"' EXIT
-trap 'exit 1' HUP INT TERM
-cd "$work" || exit 1
 touch volume.nrrd
 
 # The replies to a line typed after the program's name, one a line, sorted.
@@ -39,13 +30,7 @@ offers() {
     shift
     got=$(replies "$line" | tr '\n' ' ')
     want=$(printf '%s\n' "$@" | LC_ALL=C sort | tr '\n' ' ')
-    if [ "$got" = "$want" ]; then
-        passed=$((passed + 1))
-        echo "ok   vodr $line"
-    else
-        failed=$((failed + 1))
-        echo "FAIL vodr $line: offers '$got', not '$want'"
-    fi
+    verdict "vodr $line" "$([ "$got" = "$want" ] || echo "offers '$got', not '$want'")"
 }
 
 # What the program says of itself, read here in another way than the completion does.
@@ -99,5 +84,4 @@ offers 'render -o vol' volume.nrrd
 offers 'render --alpha vol' volume.nrrd
 offers 'info no-such' ''
 
-echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+end_checks

@@ -3,57 +3,14 @@
 #   tests/report.sh VODR    a line a check, then "N passed, N failed"; exit 1 when any failed
 set -u
 
-if [ $# -ne 1 ] || [ ! -x "$1" ]; then
-    echo "usage: tests/report.sh VODR (a program that can be run)" >&2
-    exit 2
-fi
-vodr=$(CDPATH='' cd "$(dirname "$1")" && pwd)/$(basename "$1")
-work=$(mktemp -d "${TMPDIR:-/tmp}/vodr-report-XXXXXX")
-trap 'rm -rf "$work"' EXIT
-trap 'exit 1' HUP INT TERM
-mkdir "$work/here" && cd "$work/here" || exit 1
-passed=0
-failed=0
+# shellcheck source=tests/lib/checks.sh
+. "$(dirname "$0")/lib/checks.sh"
+begin_checks "$0" "$@"
 
 browser=
 for name in chromium chromium-browser google-chrome; do
     [ -n "$browser" ] || browser=$(command -v $name)
 done
-
-verdict() { # NAME PROBLEM: an empty PROBLEM is a pass
-    if [ -z "$2" ]; then
-        passed=$((passed + 1))
-        echo "ok   $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL $1: $2"
-    fi
-}
-
-equal() { # NAME A B
-    verdict "$1" "$([ "$2" = "$3" ] || echo "'$2' is not '$3'")"
-}
-
-same() { # NAME A B
-    verdict "$1" "$(cmp "$2" "$3" 2>&1)"
-}
-
-# bad CODE WORDS COMMAND...: that exit code, one line on standard error that holds WORDS, no file made or changed
-bad() {
-    want=$1
-    words=$2
-    shift 2
-    before=$(ls -lA --full-time)
-    "$@" >../out 2>../err
-    code=$?
-    problem=
-    [ $code -eq "$want" ] || problem="exit code $code, not $want"
-    [ "$(grep -c '^vodr: ' ../err)" -eq 1 ] || problem="$problem, not one line on standard error"
-    grep -qF -e "$words" ../err || problem="$problem, it does not say '$words': $(cat ../err)"
-    [ "$before" = "$(ls -lA --full-time)" ] || problem="$problem, the files changed"
-    shift
-    verdict "refused: $*" "$problem"
-}
 
 # Every tag of a page is closed in its order; script, style and pre-formatted text aside.
 tags_nest() { # PAGE
@@ -225,5 +182,4 @@ limited() {
 }
 bad 3 "'a.html'" limited "$vodr" report "$raw" --dims 16x8x8 -o a.html
 
-echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+end_checks

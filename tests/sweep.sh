@@ -4,64 +4,9 @@
 #   tests/sweep.sh VODR    a line a check, then "N passed, N failed"; exit 1 when any failed
 set -u
 
-if [ $# -ne 1 ] || [ ! -x "$1" ]; then
-    echo "usage: tests/sweep.sh VODR (a program that can be run)" >&2
-    exit 2
-fi
-vodr=$(CDPATH='' cd "$(dirname "$1")" && pwd)/$(basename "$1")
-work=$(mktemp -d "${TMPDIR:-/tmp}/vodr-sweep-XXXXXX")
-trap 'rm -rf "$work"' EXIT
-trap 'exit 1' HUP INT TERM
-mkdir "$work/here" && cd "$work/here" || exit 1
-passed=0
-failed=0
-
-verdict() { # NAME PROBLEM: an empty PROBLEM is a pass
-    if [ -z "$2" ]; then
-        passed=$((passed + 1))
-        echo "ok   $1"
-    else
-        failed=$((failed + 1))
-        echo "FAIL $1: $2"
-    fi
-}
-
-# good NAME COMMAND...: exit 0, nothing on standard error, standard output in ../out
-good() {
-    name=$1
-    shift
-    "$@" >../out 2>../err
-    code=$?
-    problem=
-    [ $code -eq 0 ] || problem="exit code $code"
-    [ -s ../err ] && problem="$problem, said: $(cat ../err)"
-    verdict "$name" "$problem"
-}
-
-# bad CODE WORDS COMMAND...: that exit code, one line on standard error that holds WORDS, no file made or changed
-bad() {
-    want=$1
-    words=$2
-    shift 2
-    before=$(ls -lA --full-time)
-    "$@" >../out 2>../err
-    code=$?
-    problem=
-    [ $code -eq "$want" ] || problem="exit code $code, not $want"
-    [ "$(wc -l <../err)" -eq 1 ] || problem="$problem, $(wc -l <../err) lines on standard error"
-    grep -qF -e "$words" ../err || problem="$problem, it does not say '$words': $(cat ../err)"
-    [ "$before" = "$(ls -lA --full-time)" ] || problem="$problem, the files changed"
-    shift
-    verdict "refused: $*" "$problem"
-}
-
-same() { # NAME A B
-    verdict "$1" "$(cmp "$2" "$3" 2>&1)"
-}
-
-expect() { # NAME PATTERN FILE
-    verdict "$1" "$(grep -q -e "$2" "$3" || echo "no line of $3 matches $2")"
-}
+# shellcheck source=tests/lib/checks.sh
+. "$(dirname "$0")/lib/checks.sh"
+begin_checks "$0" "$@"
 
 # The values of column $1 of file $2, a line each. Columns before the one asked for hold no comma but in quotes.
 column() {
@@ -277,5 +222,4 @@ kills=0
     same "the same in the end" full-disk.csv long.csv
 }
 
-echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+end_checks
