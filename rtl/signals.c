@@ -1,6 +1,7 @@
 #include "signals.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "layout.h"
 
@@ -183,6 +184,16 @@ int32_t signal_width(const signal_field *field, const vodr_machine *machine)
     case WIDTH_BEAT: return 8 * machine->mem_bus_bytes;
     default: return field->width_bits;
     }
+}
+
+size_t signal_bytes(const signal_field *field, const vodr_machine *machine, const void *record)
+{
+    int32_t bytes = (signal_width(field, machine) + 7) / 8, length;
+    if (field->length != SIGNAL_WHOLE) {
+        memcpy(&length, (const char *)record + field->length, sizeof length);
+        bytes = length < bytes ? length : bytes;
+    }
+    return (size_t)(bytes < field->bytes ? bytes : field->bytes);
 }
 
 const void *signal_record(const signal_port *port, const void *in, const void *out)
