@@ -18,15 +18,18 @@ typedef struct divider_state {
     volume_divider_out out;
 } divider_state;
 
-/* Rows of a slice that are looked at: all, or up to the first that has a fragment. */
+/* Cycles for a slice: one for each row that is looked at, which are all, or those up to the first that has a fragment.
+ * That it has no row takes a cycle to see. */
 static int64_t probe_slice(const brick_slice *slice, const px_rect *bound, bool *found)
 {
     rasterizer rows;
     span s;
     rasterizer_start(&rows, slice, bound);
-    int32_t first = rows.bound.y0;
+    int32_t first = rows.bound.y0, end = rows.bound.y1;
     *found = rasterizer_next(&rows, &s);
-    return *found ? s.y + 1 - first : rows.bound.y1 - first;
+    if (*found)
+        return s.y + 1 - first;
+    return end > first ? end - first : 1;
 }
 
 /* Looks for the next brick with a fragment; the work is done at once here and takes its cycles afterwards. */

@@ -207,8 +207,8 @@ static void grow(px_rect *r, const span *s)
 /* Cycles of the divider since the visit before. */
 static int64_t divider_work(pipeline *p)
 {
-    int64_t work = volume_divider_work(&p->divider) + p->probed_rows;
-    p->probed_rows = 0;
+    int64_t work = volume_divider_work(&p->divider) + p->probe_cycles;
+    p->probe_cycles = 0;
     return work;
 }
 
@@ -258,7 +258,7 @@ static void draw_slice(pipeline *p, const candidate *c, const brick_slice *slice
         cycles_slice(p->clock);
     for (span s; rasterizer_next(&rows, &s); any = true) {
         if (!any && !visited) {
-            p->probed_rows += s.y + 1 - first_row;
+            p->probe_cycles += s.y + 1 - first_row;
             begin_visit(p, c, index);
         }
         if (p->clock)
@@ -272,7 +272,7 @@ static void draw_slice(pipeline *p, const candidate *c, const brick_slice *slice
         cycles_rows(p->clock, rest);
     if (p->clock && !visited && !any) {
         p->leading_rows[index] = rest;
-        p->probed_rows += rest;
+        p->probe_cycles += rest ? rest : 1;
     }
     covered->slices += any;
 }

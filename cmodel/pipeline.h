@@ -30,7 +30,7 @@ typedef struct pipeline {
     cycles *clock;                 /* counts cycles; NULL: nobody does */
     bool failed;                   /* memory ran out while it did */
     bool flushing;                 /* what is written now is the flush at the frame's end */
-    int64_t probed_rows;           /* since the last visit: the divider's work beside its walk */
+    int64_t probe_cycles;          /* since the last visit: the divider's work beside its walk */
     int32_t *leading_rows;         /* of a candidate's slices before its first fragment */
     const vodr_observer *observer; /* set it after pipeline_start(); NULL: nobody */
 } pipeline;

@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-#define VODR_VERSION "0.2.0"
+#define VODR_VERSION "0.3.0"
 
 typedef enum vodr_status {
     VODR_OK = 0,

@@ -1,0 +1,22 @@
+/* registers.h - what a Verilog block is told beside its ports, by name (docs/cosimulation.md):
+ * - registers: inputs that hold still for a frame. Those of hw/registers.txt, the machine's parameters by their own
+ *   names, and what is derived from both once a frame;
+ * - parameters of its module, in capitals: what widths and depths of memories follow from. */
+#ifndef VODR_REGISTERS_H
+#define VODR_REGISTERS_H
+
+#include "clocked_blocks.h"
+
+/* Everything a frame's registers are taken from. */
+typedef struct rtl_registers rtl_registers;
+
+/* Of a machine that was set up; NULL when there is no memory. To be freed by free(); outlives the setup. */
+rtl_registers *rtl_registers_of(const block_setup *setup);
+
+/* A register's value, negative ones in two's complement of 64 bits; false when there is no register of this name. */
+bool rtl_register(const rtl_registers *r, const char *name, uint64_t *value);
+
+/* A parameter's value; false when there is none of this name. */
+bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value);
+
+#endif
