@@ -20,6 +20,7 @@ typedef struct bench {
     block_faces *faces; /* faces->BLOCK.clock(faces->BLOCK.state, &in, &out) is a cycle */
     block_outs *reset;  /* what outputs hold before the first */
     uint64_t cycles;    /* count them here */
+    uint64_t left;      /* transactions that the frame had no more of: the next seed's */
 } bench;
 
 typedef struct block_bench {

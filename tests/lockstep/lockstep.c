@@ -14,7 +14,7 @@
 
 enum { EPISODE_TRANSACTIONS = 5000 };
 
-static const block_bench *const benches[] = {&bench_alpha_blender};
+static const block_bench *const benches[] = {&bench_volume_divider, &bench_alpha_blender};
 
 enum { BENCHES = sizeof benches / sizeof *benches };
 
@@ -62,10 +62,11 @@ static void begin(const block_bench *what, const char *settings, uint64_t seed, 
     b->scene.table.count = (size_t)1 << b->machine.density_bits;
     b->scene.entries = realloc(b->scene.entries, b->scene.table.count * sizeof *b->scene.entries);
     b->scene.table.entries = b->scene.entries;
+    size_t clear = rng_one_in(&b->random, 2) ? (size_t)rng_int(&b->random, 0, (int64_t)b->scene.table.count) : 0;
     for (size_t i = 0; i < b->scene.table.count; i++) {
         uint16_t a = (uint16_t)bench_bits(&b->random, b->machine.tf_bits);
         uint16_t c = (uint16_t)rng_int(&b->random, 0, a);
-        b->scene.entries[i] = (vodr_rgba){c, a, (uint16_t)(c / 2), a};
+        b->scene.entries[i] = i < clear ? (vodr_rgba){0, 0, 0, 0} : (vodr_rgba){c, a, (uint16_t)(c / 2), a};
     }
     if (clocked_start(&b->whole, &b->machine, &b->scene.input, &b->scene.table, &b->scene.view, NULL, &error) !=
         VODR_OK) {
@@ -85,13 +86,15 @@ static void end(bench *b)
     case_free(&b->scene);
 }
 
-static bool run_episode(const block_bench *what, const char *settings, uint64_t seed, uint64_t count, uint64_t *cycles)
+/* Up to `count` transactions; *count is then how many there were. */
+static bool run_episode(const block_bench *what, const char *settings, uint64_t seed, uint64_t *count, uint64_t *cycles)
 {
     bench b;
     begin(what, settings, seed, &b);
-    what->traffic(&b, count);
+    what->traffic(&b, *count);
     const difference d = b.pair.first;
     *cycles += b.cycles;
+    *count -= b.left;
     end(&b);
     if (!d.found) {
         return true;
@@ -113,7 +116,7 @@ static void test_block(void **state)
         uint64_t cycles = 0, done = 0;
         for (uint64_t seed = first_seed; good && done < transactions; seed++) {
             uint64_t left = transactions - done, count = left < EPISODE_TRANSACTIONS ? left : EPISODE_TRANSACTIONS;
-            good = run_episode(what, *m, seed, count, &cycles);
+            good = run_episode(what, *m, seed, &count, &cycles);
             done += count;
         }
         printf("%s, paper-16 %s: %" PRIu64 " transactions in %" PRIu64 " cycles\n", signals_of(what->block)->name, *m,
