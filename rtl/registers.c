@@ -90,6 +90,11 @@ rtl_registers *rtl_registers_of(const block_setup *setup)
     return r;
 }
 
+const vodr_machine *rtl_machine(const rtl_registers *r)
+{
+    return &r->machine;
+}
+
 static bool machine_parameter(const vodr_machine *m, const char *name, int32_t *value)
 {
     size_t count;

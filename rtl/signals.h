@@ -37,7 +37,7 @@ typedef struct block_signals {
 /* Of a vodr_block. */
 const block_signals *signals_of(vodr_block block);
 
-/* A field's width in a machine. */
+/* A field's width in a machine, bits. */
 int32_t signal_width(const signal_field *field, const vodr_machine *machine);
 
 /* A port's record in a block's `in` or `out`. */
