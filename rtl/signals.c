@@ -21,7 +21,7 @@
 
 /* Fields that some block does not have stand at either end. */
 
-enum { BRICK_BOX = 2, BRICK_SEEN = 8, COLOUR_CACHED = 1, COLOUR_BLENDED = 3, DOOR_TEXTURE = 2 };
+enum { BRICK_BOX = 2, BRICK_SEEN = 8, COLOUR_CACHED = 1, COLOUR_BLENDED = 3, DOOR_TEXTURE = 2, SLICE_DRAWN = 1 };
 
 static const signal_field brick[] = {
     ALWAYS(brick_port, "brick_fresh", fresh, 1), VALID(brick_port, "brick_number", brick, 48),
@@ -31,9 +31,9 @@ static const signal_field brick[] = {
 };
 static const signal_field brick_ready[] = {ALWAYS(ready_port, "brick_ready", ready, 1)};
 static const signal_field slice[] = {
+    VALID(slice_port, "slice_k", slice.k, 15),
     ALWAYS(slice_port, "slice_valid", valid, 1),
     VALID(slice_port, "slice_last", last, 1),
-    VALID(slice_port, "slice_k", slice.k, 15),
     AXES(slice_port, "slice_origin", slice.plane.origin, 64),
     AXES(slice_port, "slice_step_u", slice.plane.step_u, 64),
     AXES(slice_port, "slice_step_v", slice.plane.step_v, 64),
@@ -127,8 +127,11 @@ static const signal_port slice_generator[] = {
     OUT(slice_generator, report, report),
 };
 static const signal_port rasterizer[] = {
-    IN(rasterizer, slice, slice),        IN(rasterizer, accept, fragment), OUT(rasterizer, slice_ready, slice),
-    OUT(rasterizer, fragment, fragment), OUT(rasterizer, report, report),
+    SOME(slice, SLICE_DRAWN, COUNT(slice), false, offsetof(rasterizer_in, slice)),
+    IN(rasterizer, accept, fragment),
+    OUT(rasterizer, slice_ready, slice),
+    OUT(rasterizer, fragment, fragment),
+    OUT(rasterizer, report, report),
 };
 static const signal_port texture_unit[] = {
     SOME(brick, 0, BRICK_SEEN, false, offsetof(texture_unit_in, brick)),
