@@ -8,6 +8,7 @@
 #include "lockstep.h"
 #include "pipeline.h"
 #include "place.h"
+#include "top.h"
 #include "transactions.h"
 #include "watchdog.h"
 #include "waveform.h"
@@ -27,6 +28,7 @@ typedef struct cosim {
     clocked *machine;
     lockstep *steps[VODR_BLOCK_COUNT];
     transactions *streams[VODR_BLOCK_COUNT];
+    top *top; /* instead of both */
     transactions_reference reference;
     places places;
     watchdog watchdog;
@@ -43,6 +45,9 @@ static void cosim_close(cosim *c)
         if (c->streams[b])
             transactions_close(c->streams[b]);
     }
+    if (c->top)
+        top_close(c->top);
+    free(c->top);
     places_finish(&c->places);
     clocked_free(c->machine);
     clocked_free(c->reference.machine);
@@ -62,6 +67,19 @@ static rtl_status step_with(cosim *c, vodr_block block, const rtl_source *source
     return status;
 }
 
+static rtl_status step_top(cosim *c, const rtl_source *source, vodr_error *error)
+{
+    top *t = calloc(1, sizeof *t);
+    if (!t)
+        return rtl_fail(error, RTL_NO_MEMORY, "no memory for vodr_top");
+    rtl_status status = top_open(t, source, c->machine, error);
+    if (status == RTL_OK)
+        c->top = t;
+    else
+        free(t);
+    return status;
+}
+
 static rtl_status start(clocked **machine, const inputs *in, const vodr_observer *observer, vodr_error *error)
 {
     vodr_status status = clocked_start(machine, in->machine, in->volume, in->table, in->view, observer, error);
@@ -77,12 +95,14 @@ static rtl_status cosim_open(cosim *c, const inputs *in, const cosim_options *o,
     if (pipeline_check(in->machine, in->volume, in->view, error) != VODR_OK)
         return RTL_INVALID;
     for (int b = 0; status == RTL_OK && b < VODR_BLOCK_COUNT; b++)
-        if (o->replaced[b])
+        if (o->replaced[b] || o->top)
             status = cosim_check((vodr_block)b, in->machine, error);
     if (status == RTL_OK)
         status = start(&c->machine, in, traced == NO_BLOCK ? o->observer : NULL, error);
-    if (status == RTL_OK && !by_cycles)
+    if (status == RTL_OK && (!by_cycles || o->top))
         status = start(&c->reference.machine, in, NULL, error);
+    if (status == RTL_OK && o->top)
+        return step_top(c, &(rtl_source){.root = o->root, .build = o->build, .trace = traced != NO_BLOCK}, error);
     for (int b = 0; status == RTL_OK && b < VODR_BLOCK_COUNT; b++) {
         const rtl_source source = {.root = o->root, .build = o->build, .file = o->files[b], .trace = b == traced};
         if (!o->replaced[b])
@@ -97,12 +117,14 @@ static rtl_status cosim_open(cosim *c, const inputs *in, const cosim_options *o,
 /* What a block in Verilog did differently by now. */
 static const difference *difference_of(const cosim *c, int block)
 {
-    return c->steps[block] ? &c->steps[block]->first : transactions_first(c->streams[block]);
+    return c->top ? &c->top->first : c->steps[block] ? &c->steps[block]->first : transactions_first(c->streams[block]);
 }
 
 /* The first block whose Verilog differs by now; NO_BLOCK when none does. */
 static int differing(const cosim *c)
 {
+    if (c->top && c->top->first.found)
+        return c->top->block;
     for (int b = 0; b < VODR_BLOCK_COUNT; b++)
         if ((c->steps[b] || c->streams[b]) && difference_of(c, b)->found)
             return b;
@@ -112,6 +134,8 @@ static int differing(const cosim *c)
 /* After the last cycle: whether something is missing. */
 static void end(cosim *c)
 {
+    if (c->top)
+        top_end(c->top, c->reference.machine);
     for (int b = 0; b < VODR_BLOCK_COUNT; b++) {
         if (c->steps[b])
             lockstep_end(c->steps[b]);
@@ -124,7 +148,11 @@ static void end(cosim *c)
 static bool step(cosim *c)
 {
     const block_outs *before = clocked_outs(c->machine);
-    bool left = clocked_step(c->machine, NULL);
+    bool left = c->top ? top_step(c->top) : clocked_step(c->machine, NULL);
+    if (c->top) {
+        clocked_step(c->reference.machine, NULL);
+        top_compare(c->top, c->reference.machine);
+    }
     places_cycle(&c->places, before, clocked_outs(c->machine));
     watchdog_cycle(&c->watchdog, c->cycle, before, clocked_outs(c->machine));
     c->cycle++;
@@ -155,6 +183,11 @@ static int draw(cosim *c, const cosim_options *o)
 
 /* ---- a difference ---- */
 
+static rtl_block *block_of(const cosim *c, int block)
+{
+    return c->top ? &c->top->rtl : c->steps[block] ? &c->steps[block]->rtl : transactions_block(c->streams[block]);
+}
+
 /* Draws the frame again up to the difference, and a little beyond, with the block's signals written down. */
 static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int block, const difference *d,
                                 uint64_t cycle, vodr_error *error)
@@ -163,9 +196,7 @@ static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int bl
     waveform w;
     rtl_status status = cosim_open(&c, in, o, block, error);
     if (status == RTL_OK)
-        status =
-            waveform_open(&w, o->waveform, c.steps[block] ? &c.steps[block]->rtl : transactions_block(c.streams[block]),
-                          d, cycle, error);
+        status = waveform_open(&w, o->waveform, block_of(&c, block), d, cycle, error);
     bool left = status == RTL_OK;
     while (left && c.cycle < w.end_cycle) {
         waveform_cycle(&w, c.cycle);

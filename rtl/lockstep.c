@@ -59,18 +59,16 @@ bool lockstep_compare(vodr_block block, const vodr_machine *machine, const void 
 
 /* ---- faces ---- */
 
-/* What is left in memory, compared with what C left there. */
-static const signal_field memory_field = {.name = "memory_write_data", .when = SIGNAL_ALWAYS, .length = SIGNAL_WHOLE};
-
-static void compare_memory(lockstep *l, int64_t address, int64_t bytes)
+void lockstep_compare_memory(const storage *expected, const storage *got, int64_t address, int64_t bytes, difference *d)
 {
-    const storage *mine = l->rtl.memory.storage;
-    const uint8_t *expected = l->behind.lines + address, *got = mine->lines + address;
-    if (l->first.found || memcmp(expected, got, (size_t)bytes) == 0)
+    static const signal_field memory_field = {.name = "memory_write_data", .when = SIGNAL_ALWAYS};
+    static const signal_port memory_port = {.fields = &memory_field, .count = 1, .output = true};
+    const uint8_t *a = expected->lines + address, *b = got->lines + address;
+    if (memcmp(a, b, (size_t)bytes) == 0)
         return;
-    l->first = (difference){.found = true, .field = &memory_field};
-    difference_tell(expected, got, (size_t)bytes, l->first.expected);
-    difference_tell(got, expected, (size_t)bytes, l->first.got);
+    *d = (difference){.found = true, .port = &memory_port, .field = &memory_field};
+    difference_tell(a, b, (size_t)bytes, d->expected);
+    difference_tell(b, a, (size_t)bytes, d->got);
 }
 
 /* The Verilog goes first: its memory takes a beat of a write before C can be granted the next. */
@@ -79,8 +77,9 @@ static void compare_memory(lockstep *l, int64_t address, int64_t bytes)
     {                                                                                                                  \
         lockstep *l = state;                                                                                           \
         rtl_block_clock(&l->rtl, in, out);                                                                             \
-        if (l->rtl.wrote_bytes)                                                                                        \
-            compare_memory(l, l->rtl.wrote_address, l->rtl.wrote_bytes);                                               \
+        if (l->rtl.wrote_bytes && !l->first.found)                                                                     \
+            lockstep_compare_memory(&l->behind, l->rtl.memory.storage, l->rtl.wrote_address, l->rtl.wrote_bytes,       \
+                                    &l->first);                                                                        \
         l->inner.name.clock(l->inner.name.state, in, &l->expected.name);                                               \
         if (!l->first.found)                                                                                           \
             lockstep_compare(VODR_BLOCK_##NAME, l->rtl.machine, &l->expected.name, out, &l->first);                    \
@@ -143,7 +142,7 @@ void lockstep_close(lockstep *l, block_faces *faces)
 
 bool lockstep_end(lockstep *l)
 {
-    if (l->behind.lines)
-        compare_memory(l, 0, l->behind.texture_base);
+    if (l->behind.lines && !l->first.found)
+        lockstep_compare_memory(&l->behind, l->rtl.memory.storage, 0, l->behind.texture_base, &l->first);
     return !l->first.found;
 }

@@ -174,9 +174,72 @@ static const signal_port frame_buffer[] = {
     OUT(frame_buffer, report, report),
 };
 
+/* ---- vodr_top ---- */
+
+#define REPORT(block)                                                                                                  \
+    {                                                                                                                  \
+        ALWAYS(report_port, #block "_status", status, 4), ALWAYS(report_port, #block "_idle", idle, 1)                 \
+    }
+static const signal_field reports[][2] = {REPORT(volume_divider), REPORT(slice_generator), REPORT(rasterizer),
+                                          REPORT(texture_unit),   REPORT(alpha_blender),   REPORT(pixel_cache),
+                                          REPORT(frame_buffer)};
+
+/* Fields that vodr_top shows stand together but for these. */
+static const signal_field top_slice[] = {ALWAYS(slice_port, "slice_valid", valid, 1),
+                                         VALID(slice_port, "slice_k", slice.k, 15)};
+static const signal_field top_bounds[] = {RECTANGLE(brick_port, "brick", bound)};
+static const signal_field top_load[] = {ALWAYS(load_port, "load_valid", valid, 1),
+                                        VALID(load_port, "load_bytes", bytes, 32)};
+static const signal_field top_blended[] = {ALWAYS(blended_port, "blended_valid", valid, 1),
+                                           VALID(blended_port, "blended_writes", writes, 1)};
+static const signal_field top_write[] = {ALWAYS(write_port, "write_valid", valid, 1),
+                                         VALID(write_port, "write_bytes", bytes, 14)};
+
+#define SHOWN(fields, first, end, member) SOME(fields, first, end, true, offsetof(block_outs, member))
+#define ALL(fields, member) SHOWN(fields, 0, COUNT(fields), member)
+
+enum { BRICK_TOLD = 8, FRAGMENT_TOLD = 4 };
+
+static const signal_port vodr_top[] = {
+    {voxels, COUNT(voxels), false, offsetof(texture_unit_in, voxels)},
+    SHOWN(brick, 0, BRICK_TOLD, volume_divider.brick),
+    ALL(top_bounds, volume_divider.brick),
+    ALL(reports[0], volume_divider.report),
+    ALL(top_slice, slice_generator.slice),
+    ALL(reports[1], slice_generator.report),
+    ALL(slice_ready, rasterizer.slice),
+    SHOWN(fragment, 0, FRAGMENT_TOLD, rasterizer.fragment),
+    ALL(reports[2], rasterizer.report),
+    SHOWN(accept, 0, 1, texture_unit.fragment),
+    ALL(top_load, texture_unit.load),
+    ALL(fetch, texture_unit.fetch),
+    ALL(reports[3], texture_unit.report),
+    ALL(top_blended, alpha_blender.blended),
+    ALL(reports[4], alpha_blender.report),
+    SHOWN(door, 1, DOOR_TEXTURE, pixel_cache.door),
+    ALL(look_up, pixel_cache.look_up),
+    SHOWN(pixel, 0, 1, pixel_cache.pixel),
+    SHOWN(fill, 0, 1, pixel_cache.fill),
+    ALL(top_write, pixel_cache.write),
+    ALL(reports[5], pixel_cache.report),
+    SHOWN(loaded, 0, 1, frame_buffer.load),
+    ALL(reports[6], frame_buffer.report),
+};
+
+int32_t rtl_top_record(vodr_block block)
+{
+    static const size_t records[VODR_BLOCK_COUNT + 1] = {
+        offsetof(block_outs, volume_divider), offsetof(block_outs, slice_generator), offsetof(block_outs, rasterizer),
+        offsetof(block_outs, texture_unit),   offsetof(block_outs, alpha_blender),   offsetof(block_outs, pixel_cache),
+        offsetof(block_outs, frame_buffer),   offsetof(block_outs, voxel_memory)};
+    return (int32_t)records[block];
+}
+
+/* ---- all ---- */
+
 const block_signals *signals_of(vodr_block block)
 {
-    static const block_signals blocks[VODR_BLOCK_COUNT] = {
+    static const block_signals blocks[VODR_BLOCK_COUNT + 1] = {
         {"volume_divider", volume_divider, COUNT(volume_divider)},
         {"slice_generator", slice_generator, COUNT(slice_generator)},
         {"rasterizer", rasterizer, COUNT(rasterizer)},
@@ -184,6 +247,7 @@ const block_signals *signals_of(vodr_block block)
         {"alpha_blender", alpha_blender, COUNT(alpha_blender)},
         {"pixel_cache", pixel_cache, COUNT(pixel_cache)},
         {"frame_buffer", frame_buffer, COUNT(frame_buffer)},
+        {"vodr_top", vodr_top, COUNT(vodr_top)},
     };
     return &blocks[block];
 }

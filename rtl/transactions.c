@@ -195,19 +195,6 @@ static void compare_all(transactions *t)
         }
 }
 
-/* What the frame buffer has left in memory. */
-static void compare_memory(transactions *t)
-{
-    static const signal_field memory_field = {.name = "memory_write_data", .when = SIGNAL_ALWAYS};
-    const storage *mine = clocked_setup(t->machine)->storage, *theirs = clocked_setup(t->reference->machine)->storage;
-    size_t bytes = (size_t)mine->texture_base;
-    if (memcmp(mine->lines, theirs->lines, bytes) == 0)
-        return;
-    t->first = (difference){.found = true, .field = &memory_field};
-    difference_tell(theirs->lines, mine->lines, bytes, t->first.expected);
-    difference_tell(mine->lines, theirs->lines, bytes, t->first.got);
-}
-
 bool transactions_end(transactions *t)
 {
     for (int32_t i = 0; i < t->count && !t->first.found; i++)
@@ -215,8 +202,9 @@ bool transactions_end(transactions *t)
             tell_nothing(t, &t->channels[i], "another", "nothing more");
     while (!t->reference->done)
         t->reference->done = !clocked_step(t->reference->machine, NULL);
+    const storage *mine = clocked_setup(t->machine)->storage, *theirs = clocked_setup(t->reference->machine)->storage;
     if (!t->first.found && t->rtl.block == VODR_BLOCK_FRAME_BUFFER)
-        compare_memory(t);
+        lockstep_compare_memory(theirs, mine, 0, mine->texture_base, &t->first);
     return !t->first.found;
 }
 
