@@ -12,7 +12,7 @@ SANITIZE ?=
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
 STRICT   := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -ffp-contract=off \
             -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-psabi -Werror
-INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -isystem /usr/include/nifti
+INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -Irtl -isystem /usr/include/nifti
 COMPILE   = $(CC) $(STRICT) $(CFLAGS) $(SANITIZE) $(INCLUDES) -pthread -MMD -MP
 REFERENCE_MATHS := -fno-math-errno -fno-trapping-math # lanes take square roots side by side; no result changes
 
@@ -31,6 +31,7 @@ GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.v
 CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vodr_hw.o
 HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
             $(BUILD)/gen/energy_text.o
+RTL      := $(patsubst %.c,$(BUILD)/%.o,$(wildcard rtl/*.c))
 REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
              $(BUILD)/reference/$(if $(NVCC),device_cuda.o,device_no_cuda.o)
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
@@ -41,7 +42,7 @@ BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
             host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
-SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch]))
+SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
 SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
@@ -62,7 +63,7 @@ demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in bu
 	@$(MAKE) -s $(PARALLEL) all $(BUILD)/bench/table_vodr
 	@scripts/demo $(BUILD)
 
-tests: $(TESTS) $(BENCHES)
+tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep
 
 check: ## run every test; the last line is `N passed, N failed`
 	@scripts/deps check fuzz
@@ -181,33 +182,47 @@ $(BUILD)/libreference.a: $(REFERENCE)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/librtl.a: $(RTL)
+	@rm -f $@
+	ar rcs $@ $^
+
+# Where co-simulation finds what it builds libraries of, and keeps them.
+WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
+$(BUILD)/host/cosim_options.o: STRICT += $(WHERE)
+
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
 	ar rcs $@ $^
 
-$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvodr.a
+$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
 $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
-$(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvodr.a
+$(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
 $(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
 	$(NVCC) -o $@ $^
 
-$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
+$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
+
+LOCKSTEP := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lockstep/*.c))
+$(LOCKSTEP): STRICT += $(WHERE)
+
+$(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
 $(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib
 
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvodr.a
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
-$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvodr.a
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs

@@ -34,6 +34,7 @@ struct clocked {
     texture_unit tables;
     volume_divider walk;
     storage storage;
+    block_setup setup;
     block_faces faces;
     block_outs bank[2];
     block_ins ins[2];
@@ -120,27 +121,28 @@ static vodr_status start(clocked *c, const vodr_volume *volume, const vodr_table
     const vodr_machine *m = c->machine;
     const px_rect window = {0, 0, c->view->width_px, c->view->height_px};
     int32_t edge = volume_divider_edge(m, c->view);
-    block_setup setup = {.machine = m,
-                         .view = c->view,
-                         .volume = volume,
-                         .walk = &c->walk,
-                         .tables = &c->tables,
-                         .storage = &c->storage};
+    c->setup = (block_setup){.machine = m,
+                             .view = c->view,
+                             .volume = volume,
+                             .walk = &c->walk,
+                             .tables = &c->tables,
+                             .storage = &c->storage};
     size_t bricks = 1;
     for (int i = 0; i < 3; i++) {
-        setup.edge_vox[i] = edge ? edge : volume->dims_vox[i];
-        bricks *= (size_t)ceil_div32(volume->dims_vox[i], setup.edge_vox[i]);
+        c->setup.edge_vox[i] = edge ? edge : volume->dims_vox[i];
+        bricks *= (size_t)ceil_div32(volume->dims_vox[i], c->setup.edge_vox[i]);
     }
     vodr_status status = texture_unit_start(&c->tables, m, volume, table, c->view, error);
     if (status == VODR_OK && edge)
         status = volume_divider_check(m, volume->dims_vox, edge, error);
     if (status == VODR_OK)
-        status = volume_divider_start(&c->walk, m, volume, c->view, setup.edge_vox, &window, c->tables.transparent_to,
-                                      error);
+        status = volume_divider_start(&c->walk, m, volume, c->view, c->setup.edge_vox, &window,
+                                      c->tables.transparent_to, error);
     if (status != VODR_OK)
         return status;
     if (!clocked_counts_start(&c->counts, m, c->view, observer, bricks) ||
-        !storage_start(&c->storage, m, c->view, volume, setup.edge_vox) || !make_blocks(&setup, &c->faces, &c->bank[0]))
+        !storage_start(&c->storage, m, c->view, volume, c->setup.edge_vox) ||
+        !make_blocks(&c->setup, &c->faces, &c->bank[0]))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
     c->counts.n.brick_vox = edge;
     c->counts.n.skipped_bricks = c->walk.empty_bricks;
@@ -168,6 +170,11 @@ vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_v
 block_faces *clocked_faces(clocked *c)
 {
     return &c->faces;
+}
+
+const block_setup *clocked_setup(const clocked *c)
+{
+    return &c->setup;
 }
 
 block_outs *clocked_reset(clocked *c)

@@ -3,7 +3,7 @@
 #ifndef VODR_CLOCKED_H
 #define VODR_CLOCKED_H
 
-#include "blocks.h"
+#include "clocked_blocks.h"
 
 enum { CLOCKED_BLOCKS = VODR_BLOCK_COUNT + 1 }; /* and the external memory of `whole` */
 
@@ -18,6 +18,9 @@ vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_v
  * into a face, and its reset values into its outputs; what was there is the caller's then. */
 block_faces *clocked_faces(clocked *c);
 block_outs *clocked_reset(clocked *c);
+
+/* What they are made from, for whoever makes another. */
+const block_setup *clocked_setup(const clocked *c);
 
 /* One cycle. `order` names each of CLOCKED_BLOCKS blocks once, a vodr_block or VODR_BLOCK_COUNT for the external
  * memory, and makes no difference; NULL: as they stand. False when there was nothing left to do. */

@@ -17,18 +17,43 @@ double draw_median(double *times, int count)
     return (times[(count - 1) / 2] + times[count / 2]) / 2;
 }
 
-static host_status draw_once(const scene *s, const vodr_machine *machine, const vodr_options *how, result *r,
-                             double *wall_s, host_error *error)
+static host_status draw_cosim(const scene *s, const vodr_machine *machine, const vodr_options *how,
+                              const cosim_options *cosim, result *r, host_error *error)
+{
+    static const host_status of[] = {[RTL_OK] = HOST_OK,
+                                     [RTL_DIFFERS] = HOST_DIFFERENT,
+                                     [RTL_INVALID] = HOST_BAD_INPUT,
+                                     [RTL_NO_MEMORY] = HOST_ENVIRONMENT,
+                                     [RTL_ENVIRONMENT] = HOST_ENVIRONMENT};
+    vodr_error reason;
+    cosim_options options = *cosim;
+    options.progress = how->progress;
+    options.progress_context = how->progress_context;
+    options.observer = how->observer;
+    rtl_status status =
+        cosim_render(machine, &s->densities, &s->table, &s->view, &options, &r->frame, &r->counters, &reason);
+    return status == RTL_OK ? HOST_OK : host_fail(error, of[status], "%s", reason.text);
+}
+
+static host_status draw_c(const scene *s, const vodr_machine *machine, const vodr_options *how, result *r,
+                          host_error *error)
 {
     vodr_error reason;
-    vodr_frame_free(&r->frame);
-    double begin_s = progress_now_s();
     vodr_status status =
         vodr_render(machine, &s->densities, &s->table, &s->view, how, &r->frame, &r->counters, &reason);
-    *wall_s = progress_now_s() - begin_s;
     if (status == VODR_OK)
         return HOST_OK;
     return host_fail(error, status == VODR_NO_MEMORY ? HOST_ENVIRONMENT : HOST_BAD_INPUT, "%s", reason.text);
+}
+
+static host_status draw_once(const scene *s, const vodr_machine *machine, const vodr_options *how,
+                             const cosim_options *cosim, result *r, double *wall_s, host_error *error)
+{
+    vodr_frame_free(&r->frame);
+    double begin_s = progress_now_s();
+    host_status status = cosim ? draw_cosim(s, machine, how, cosim, r, error) : draw_c(s, machine, how, r, error);
+    *wall_s = progress_now_s() - begin_s;
+    return status;
 }
 
 host_status draw(const scene *s, const vodr_machine *machine, const draw_options *how, result *r, host_error *error)
@@ -48,7 +73,7 @@ host_status draw(const scene *s, const vodr_machine *machine, const draw_options
         return host_fail(error, HOST_ENVIRONMENT, "no memory");
     host_status status = HOST_OK;
     for (int i = 0; status == HOST_OK && i < how->repeat; i++)
-        status = draw_once(s, machine, &options, r, &times[i], error);
+        status = draw_once(s, machine, &options, how->cosim, r, &times[i], error);
     progress_end(&line);
     if (status == HOST_OK)
         r->wall_s = draw_median(times, how->repeat);

@@ -2,6 +2,7 @@
 #ifndef HOST_DRAW_H
 #define HOST_DRAW_H
 
+#include "cosim.h"
 #include "digest.h"
 #include "host.h"
 #include "scene.h"
@@ -24,6 +25,7 @@ typedef struct draw_options {
     bool cycles; /* count them */
     int repeat;  /* at least 1; an observer is told of every one */
     const vodr_observer *observer;
+    const cosim_options *cosim; /* some blocks in Verilog: draws on one thread, and counts cycles; NULL: none */
 } draw_options;
 
 /* The median of `count` times, which are put in order. */

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "commands.h"
+#include "cosim_options.h"
 #include "cycle_stats.h"
 #include "draw.h"
 #include "image.h"
@@ -18,6 +19,7 @@ static const char *const output_option[OUTPUTS] = {"output", "raw", "stats", "re
 typedef struct render_options {
     view_options view;
     output_set outputs;
+    cosim_choice cosim;
 } render_options;
 
 static const option rows[] = {
@@ -89,14 +91,18 @@ static host_status render(const char *path, render_options *options, host_error 
 {
     scene s;
     result r = {.repeat = 0};
-    const view_options *v = &options->view;
+    view_options *v = &options->view;
+    v->cycles |= options->cosim.any;
     draw_options how = {.label = "drawing",
                         .threads = v->threads,
                         .path = v->path,
                         .simd = v->simd,
                         .cycles = v->cycles,
-                        .repeat = options->outputs.repeat};
+                        .repeat = options->outputs.repeat,
+                        .cosim = options->cosim.any ? &options->cosim.cosim : NULL};
     host_status status = output_set_check(&options->outputs, v, path, error);
+    if (status == HOST_OK)
+        status = cosim_choice_check(&options->cosim, options->outputs.path[PNG], error);
     if (status == HOST_OK)
         status = scene_open(path, &options->view, &s, error);
     if (status != HOST_OK)
@@ -117,13 +123,16 @@ static host_status render(const char *path, render_options *options, host_error 
 static host_status run(int argc, char **argv, host_error *error)
 {
     render_options options = {.view = view_options_default(),
-                              .outputs = {.option = output_option, .count = OUTPUTS, .repeat = 1}};
-    void *const targets[] = {&options.outputs, &options.view, &options.view, &options.view.volume, &options.view};
+                              .outputs = {.option = output_option, .count = OUTPUTS, .repeat = 1},
+                              .cosim = cosim_choice_default()};
+    void *const targets[] = {&options.outputs, &options.cosim,       &options.view,
+                             &options.view,    &options.view.volume, &options.view};
     const char *operands[OPTION_OPERANDS];
     bool help;
     host_status status = options_parse(&command_render, argc, argv, targets, operands, &help, error);
     if (status == HOST_OK && !help)
         status = render(operands[0], &options, error);
+    cosim_choice_free(&options.cosim);
     view_options_free(&options.view);
     return status;
 }
@@ -134,6 +143,6 @@ const command command_render = {
     .required = 1,
     .summary = "draw a volume with the machine: the picture, and what it cost",
     .example = "  vodr render head.nrrd -o head.png --tf skin-bone --view -30,20 --size 512x512 --stats head.json",
-    .tables = {&table, &option_view, &option_machine, &option_volume, &option_picture},
+    .tables = {&table, &option_cosim, &option_view, &option_machine, &option_volume, &option_picture},
     .run = run,
 };

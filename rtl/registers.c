@@ -86,8 +86,14 @@ rtl_registers *rtl_registers_of(const block_setup *setup)
         r->edge_vox[c] = setup->edge_vox[c];
         r->bricks[c] = walk->bricks[c];
         r->nest[c] = walk->nest[c];
+        r->eye[c] = volume_divider_eye(walk, c);
     }
     return r;
+}
+
+const vodr_machine *rtl_machine(const rtl_registers *r)
+{
+    return &r->machine;
 }
 
 static bool machine_parameter(const vodr_machine *m, const char *name, int32_t *value)
@@ -147,6 +153,7 @@ bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
 {
     const vodr_machine *m = &r->machine;
     int64_t bricks = (int64_t)r->bricks[0] * r->bricks[1] * r->bricks[2];
+    int64_t beat = m->mem_bus_bytes < m->texture_burst_bytes ? m->mem_bus_bytes : m->texture_burst_bytes;
     const struct {
         const char *name;
         int64_t value;
@@ -154,6 +161,7 @@ bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
         {"LINE_W", m->line_px.width},
         {"LINE_H", m->line_px.height},
         {"LINE_BYTES", line_bytes(m)},
+        {"BEAT_BYTES", beat},
         {"TEXTURE_BYTES", texture_bytes(r)},
         {"FRAGMENT_ROOM", m->fragment_fifo + (m->traversal == VODR_TRAVERSAL_WHOLE ? m->mem_latency_cycles : 0)},
         {"EMPTY_BRICKS", m->skip_empty ? power_of_two(bricks > LEAST_BITS ? bricks : LEAST_BITS) : 1},

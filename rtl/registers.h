@@ -13,6 +13,9 @@ typedef struct rtl_registers rtl_registers;
 /* Of a machine that was set up; NULL when there is no memory. To be freed by free(); outlives the setup. */
 rtl_registers *rtl_registers_of(const block_setup *setup);
 
+/* The machine. */
+const vodr_machine *rtl_machine(const rtl_registers *r);
+
 /* A register's value, negative ones in two's complement of 64 bits; false when there is no register of this name. */
 bool rtl_register(const rtl_registers *r, const char *name, uint64_t *value);
 

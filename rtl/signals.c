@@ -1,6 +1,7 @@
 #include "signals.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "layout.h"
 
@@ -20,7 +21,7 @@
 
 /* Fields that some block does not have stand at either end. */
 
-enum { BRICK_BOX = 2, BRICK_SEEN = 8, COLOUR_BLENDED = 3, DOOR_TEXTURE = 2 };
+enum { BRICK_BOX = 2, BRICK_SEEN = 8, COLOUR_CACHED = 1, COLOUR_BLENDED = 3, DOOR_TEXTURE = 2 };
 
 static const signal_field brick[] = {
     ALWAYS(brick_port, "brick_fresh", fresh, 1), VALID(brick_port, "brick_number", brick, 48),
@@ -64,9 +65,9 @@ static const signal_field fetch[] = {ALWAYS(fetch_port, "fetch_valid", valid, 1)
 static const signal_field voxels[] = {ALWAYS(voxels_port, "voxels_valid", valid, 1),
                                       VALID(voxels_port, "voxels_density", density, 128)};
 static const signal_field colour[] = {
+    VALID(colour_port, "colour_rgba", colour, WIDTH_PIXEL),
     ALWAYS(colour_port, "colour_valid", valid, 1),
     VALID(colour_port, "colour_dead", dead, 1),
-    VALID(colour_port, "colour_rgba", colour, WIDTH_PIXEL),
     VALID(colour_port, "colour_x", x, 15),
     VALID(colour_port, "colour_y", y, 15),
 };
@@ -149,11 +150,20 @@ static const signal_port alpha_blender[] = {
     OUT(alpha_blender, report, report),
 };
 static const signal_port pixel_cache[] = {
-    IN(pixel_cache, colour, colour),       IN(pixel_cache, blended, blended),     IN(pixel_cache, filled, filled),
-    IN(pixel_cache, written, written),     IN(pixel_cache, before[0], before[0]), IN(pixel_cache, before[1], before[1]),
-    IN(pixel_cache, before[2], before[2]), IN(pixel_cache, before[3], before[3]), OUT(pixel_cache, door, door),
-    OUT(pixel_cache, look_up, look_up),    OUT(pixel_cache, pixel, pixel),        OUT(pixel_cache, fill, fill),
-    OUT(pixel_cache, writes, write),       OUT(pixel_cache, report, report),
+    SOME(colour, COLOUR_CACHED, COUNT(colour), false, offsetof(pixel_cache_in, colour)),
+    IN(pixel_cache, blended, blended),
+    IN(pixel_cache, filled, filled),
+    IN(pixel_cache, written, written),
+    IN(pixel_cache, before[0], before[0]),
+    IN(pixel_cache, before[1], before[1]),
+    IN(pixel_cache, before[2], before[2]),
+    IN(pixel_cache, before[3], before[3]),
+    OUT(pixel_cache, door, door),
+    OUT(pixel_cache, look_up, look_up),
+    OUT(pixel_cache, pixel, pixel),
+    OUT(pixel_cache, fill, fill),
+    OUT(pixel_cache, writes, write),
+    OUT(pixel_cache, report, report),
 };
 static const signal_port frame_buffer[] = {
     IN(frame_buffer, fill, fill),      IN(frame_buffer, writes, write),     IN(frame_buffer, load, load),
@@ -183,6 +193,16 @@ int32_t signal_width(const signal_field *field, const vodr_machine *machine)
     case WIDTH_BEAT: return 8 * machine->mem_bus_bytes;
     default: return field->width_bits;
     }
+}
+
+size_t signal_bytes(const signal_field *field, const vodr_machine *machine, const void *record)
+{
+    int32_t bytes = (signal_width(field, machine) + 7) / 8, length;
+    if (field->length != SIGNAL_WHOLE) {
+        memcpy(&length, (const char *)record + field->length, sizeof length);
+        bytes = length < bytes ? length : bytes;
+    }
+    return (size_t)(bytes < field->bytes ? bytes : field->bytes);
 }
 
 const void *signal_record(const signal_port *port, const void *in, const void *out)

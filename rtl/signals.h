@@ -37,8 +37,11 @@ typedef struct block_signals {
 /* Of a vodr_block. */
 const block_signals *signals_of(vodr_block block);
 
-/* A field's width in a machine. */
+/* A field's width in a machine, bits. */
 int32_t signal_width(const signal_field *field, const vodr_machine *machine);
+
+/* Bytes of a field that mean anything in a record. */
+size_t signal_bytes(const signal_field *field, const vodr_machine *machine, const void *record);
 
 /* A port's record in a block's `in` or `out`. */
 const void *signal_record(const signal_port *port, const void *in, const void *out);

@@ -1,0 +1,277 @@
+#include "block.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pixel_word.h"
+#include "texture_unit.h"
+#include "volume_divider.h"
+
+enum { RESET_CYCLES = 2 };
+
+/* ---- values ---- */
+
+static int32_t port_bytes(int32_t width_bits)
+{
+    return width_bits <= 8    ? 1
+           : width_bits <= 16 ? 2
+           : width_bits <= 32 ? 4
+           : width_bits <= 64 ? 8
+                              : 4 * ((width_bits + 31) / 32);
+}
+
+static void put(void *data, int32_t width_bits, uint64_t value)
+{
+    if (width_bits < 64)
+        value &= ((uint64_t)1 << width_bits) - 1;
+    memcpy(data, &value, (size_t)port_bytes(width_bits)); /* the lowest byte comes first */
+}
+
+static uint64_t get(const void *data, int32_t width_bits)
+{
+    uint64_t value = 0;
+    memcpy(&value, data, (size_t)port_bytes(width_bits));
+    return value;
+}
+
+/* Bytes of a field that its port has. */
+static size_t field_bytes(const rtl_wire *w)
+{
+    int32_t bytes = (w->width_bits + 7) / 8;
+    return (size_t)(bytes < w->field->bytes ? bytes : w->field->bytes);
+}
+
+static void drive(const rtl_wire *w, const void *record)
+{
+    const char *from = (const char *)record + w->field->offset;
+    uint64_t value = 0;
+    if (w->width_bits > 64) {
+        memcpy(w->data, from, field_bytes(w));
+        return;
+    }
+    memcpy(&value, from, field_bytes(w));
+    put(w->data, w->width_bits, value);
+}
+
+static void sample(const rtl_wire *w, void *record)
+{
+    char *to = (char *)record + w->field->offset;
+    if (w->field->bytes <= (int16_t)sizeof(uint64_t))
+        memset(to, 0, (size_t)w->field->bytes);
+    memcpy(to, w->data, field_bytes(w));
+}
+
+/* ---- clock ---- */
+
+static void tick(rtl_block *b)
+{
+    const vodr_rtl_model *m = &b->library.model;
+    for (int half = 0; half < 2; half++) {
+        *b->clk = half == 0;
+        m->eval(m->state);
+        if (b->dumps)
+            m->dump(m->state, b->time + (uint64_t)half);
+    }
+}
+
+static void clock_memory(rtl_block *b)
+{
+    memory_command command = {.read = *b->memory_ports.read,
+                              .write = *b->memory_ports.write,
+                              .address = (int64_t)get(b->memory_ports.address, b->memory_ports.address_bits),
+                              .write_bytes =
+                                  (int32_t)get(b->memory_ports.write_bytes, b->memory_ports.write_bytes_bits),
+                              .write_data = b->memory_ports.write_data};
+    memcpy(b->memory_ports.read_data, external_memory_answer(&b->memory), (size_t)b->memory.beat_bytes);
+    external_memory_clock(&b->memory, &command);
+    b->wrote_bytes = command.write ? command.write_bytes : 0;
+    b->wrote_address = command.address;
+}
+
+static void sample_all(rtl_block *b, void *out)
+{
+    for (int32_t i = 0; i < b->output_count; i++)
+        sample(&b->outputs[i], (char *)out + b->outputs[i].port->record);
+}
+
+void rtl_block_clock(rtl_block *b, const void *in, void *out)
+{
+    for (int32_t i = 0; i < b->input_count; i++)
+        drive(&b->inputs[i], signal_record(b->inputs[i].port, in, NULL));
+    if (b->memory.storage)
+        clock_memory(b);
+    tick(b);
+    sample_all(b, out);
+}
+
+/* ---- before the first cycle ---- */
+
+static rtl_status set_register(const rtl_block *b, const vodr_rtl_port *p, const rtl_registers *registers,
+                               vodr_error *error)
+{
+    uint64_t value;
+    const char *module = signals_of(b->block)->name;
+    if (!rtl_register(registers, p->name, &value))
+        return rtl_fail(error, RTL_INVALID, "%s: input %s of module %s is neither a port of this block nor a register",
+                        b->library.file, p->name, module);
+    int64_t signed_value = (int64_t)value;
+    uint64_t beyond = p->width_bits < 64 ? value >> p->width_bits : 0;
+    bool negative_fits = p->width_bits < 64 && signed_value < 0 && signed_value >> (p->width_bits - 1) == -1;
+    if (beyond && !negative_fits)
+        return rtl_fail(error, RTL_INVALID,
+                        "%s: register %s is %" PRId64 ", which the %" PRId32 " bits of module %s cannot hold",
+                        b->library.file, p->name, signed_value, p->width_bits, module);
+    put(p->data, p->width_bits, value);
+    return RTL_OK;
+}
+
+static bool is_one_of(const char *name, const char *const *names)
+{
+    for (; *names; names++)
+        if (strcmp(name, *names) == 0)
+            return true;
+    return false;
+}
+
+static const char *const table_ports[] = {"table_write",   "table_address", "table_data", "empty_write",
+                                          "empty_address", "empty_data",    NULL};
+static const char *const memory_inputs[] = {"memory_read_data", NULL};
+
+/* Whether the port is a field of the contract, which becomes a wire. */
+static bool add_wire(rtl_block *b, const vodr_rtl_port *p)
+{
+    const block_signals *s = signals_of(b->block);
+    for (int32_t i = 0; i < s->count; i++)
+        for (int32_t j = 0; j < s->ports[i].count; j++) {
+            const signal_field *f = &s->ports[i].fields[j];
+            if (strcmp(f->name, p->name) != 0)
+                continue;
+            rtl_wire *w = p->output ? &b->outputs[b->output_count++] : &b->inputs[b->input_count++];
+            *w = (rtl_wire){.port = &s->ports[i], .field = f, .data = p->data, .width_bits = p->width_bits};
+            return true;
+        }
+    return false;
+}
+
+static rtl_status connect(rtl_block *b, const rtl_registers *registers, vodr_error *error)
+{
+    rtl_status status = RTL_OK;
+    b->clk = rtl_library_port(&b->library, "clk")->data;
+    b->rst = rtl_library_port(&b->library, "rst")->data;
+    for (int32_t i = 0; status == RTL_OK && i < b->library.model.port_count; i++) {
+        const vodr_rtl_port *p = &b->library.model.ports[i];
+        bool other = p->output || p->data == b->clk || p->data == b->rst || is_one_of(p->name, table_ports) ||
+                     is_one_of(p->name, memory_inputs);
+        if (!add_wire(b, p) && !other)
+            status = set_register(b, p, registers, error);
+    }
+    return status;
+}
+
+static rtl_status connect_memory(rtl_block *b, const block_setup *setup, vodr_error *error)
+{
+    static const struct {
+        const char *name;
+        bool output;
+    } ports[] = {{"memory_read", true},        {"memory_write", true},      {"memory_address", true},
+                 {"memory_write_bytes", true}, {"memory_write_data", true}, {"memory_read_data", false}};
+    const vodr_rtl_port *p[6];
+    for (int i = 0; i < 6; i++) {
+        p[i] = rtl_library_port(&b->library, ports[i].name);
+        if (!p[i] || p[i]->output != ports[i].output)
+            return rtl_fail(error, RTL_INVALID, "%s: module frame_buffer has no %s %s, for the memory behind it",
+                            b->library.file, ports[i].output ? "output" : "input", ports[i].name);
+        if (i > 3 && p[i]->width_bits != 8 * setup->machine->mem_bus_bytes)
+            return rtl_fail(error, RTL_INVALID,
+                            "%s: port %s of module frame_buffer has %" PRId32 " bits; it must have %" PRId32,
+                            b->library.file, ports[i].name, p[i]->width_bits, 8 * setup->machine->mem_bus_bytes);
+    }
+    b->memory_ports.read = p[0]->data;
+    b->memory_ports.write = p[1]->data;
+    b->memory_ports.address = p[2]->data;
+    b->memory_ports.address_bits = p[2]->width_bits;
+    b->memory_ports.write_bytes = p[3]->data;
+    b->memory_ports.write_bytes_bits = p[3]->width_bits;
+    b->memory_ports.write_data = p[4]->data;
+    b->memory_ports.read_data = p[5]->data;
+    if (!external_memory_start(&b->memory, setup->machine, setup->storage))
+        return rtl_fail(error, RTL_NO_MEMORY, "no memory for the frame buffer");
+    return RTL_OK;
+}
+
+/* Writes entries through a block's ports NAME_write, NAME_address and NAME_data while it is held in reset. */
+static void load_table(rtl_block *b, const char *write, const char *address, const char *data, size_t count,
+                       uint64_t (*entry)(const block_setup *setup, size_t i), const block_setup *setup)
+{
+    const vodr_rtl_port *w = rtl_library_port(&b->library, write), *a = rtl_library_port(&b->library, address),
+                        *d = rtl_library_port(&b->library, data);
+    if (!w || !a || !d)
+        return;
+    put(w->data, 1, 1);
+    for (size_t i = 0; i < count; i++) {
+        uint64_t value = entry(setup, i);
+        put(a->data, a->width_bits, i);
+        put(d->data, d->width_bits < 64 ? d->width_bits : 64, value);
+        if (d->width_bits > 64) /* the bit above a word of 64 */
+            ((uint32_t *)d->data)[2] = setup->tables->dead[i];
+        tick(b);
+    }
+    put(w->data, 1, 0);
+}
+
+static uint64_t colour_entry(const block_setup *setup, size_t i)
+{
+    int32_t bits = 8 * pixel_bytes(setup->machine);
+    uint64_t dead = bits < 64 ? (uint64_t)setup->tables->dead[i] << bits : 0;
+    return pixel_word(setup->machine, setup->tables->colours[i]) | dead;
+}
+
+static uint64_t empty_entry(const block_setup *setup, size_t i)
+{
+    return setup->walk->empty[i];
+}
+
+static void reset(rtl_block *b, const block_setup *setup)
+{
+    const volume_divider *walk = setup->walk;
+    *b->rst = 1;
+    for (int i = 0; i < RESET_CYCLES; i++)
+        tick(b);
+    if (b->block == VODR_BLOCK_TEXTURE_UNIT)
+        load_table(b, "table_write", "table_address", "table_data", (size_t)1 << setup->machine->density_bits,
+                   colour_entry, setup);
+    if (b->block == VODR_BLOCK_VOLUME_DIVIDER && walk->empty)
+        load_table(b, "empty_write", "empty_address", "empty_data",
+                   (size_t)walk->bricks[0] * (size_t)walk->bricks[1] * (size_t)walk->bricks[2], empty_entry, setup);
+    tick(b);
+    *b->rst = 0;
+}
+
+rtl_status rtl_block_open(rtl_block *b, const rtl_source *source, vodr_block block, const block_setup *setup, void *out,
+                          vodr_error *error)
+{
+    *b = (rtl_block){.block = block, .machine = setup->machine};
+    rtl_registers *registers = rtl_registers_of(setup);
+    if (!registers)
+        return rtl_fail(error, RTL_NO_MEMORY, "no memory for the registers of %s", signals_of(block)->name);
+    rtl_status status = rtl_library_open(source, block, registers, &b->library, error);
+    if (status == RTL_OK)
+        status = connect(b, registers, error);
+    if (status == RTL_OK && block == VODR_BLOCK_FRAME_BUFFER)
+        status = connect_memory(b, setup, error);
+    free(registers);
+    if (status != RTL_OK) {
+        rtl_block_close(b);
+        return status;
+    }
+    reset(b, setup);
+    sample_all(b, out);
+    return RTL_OK;
+}
+
+void rtl_block_close(rtl_block *b)
+{
+    external_memory_finish(&b->memory);
+    rtl_library_close(&b->library);
+}

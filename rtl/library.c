@@ -1,0 +1,241 @@
+#include "library.h"
+
+#include <ctype.h>
+#include <dlfcn.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MAX_ARGUMENTS = 40, MAX_PATH = 4096 };
+
+rtl_status rtl_fail(vodr_error *error, rtl_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->text, sizeof error->text, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+/* ---- the parameters that a module has ---- */
+
+/* The next `parameter ... NAME =` of a Verilog text; NULL when there is none. The text loses the end of the name. */
+static char *next_parameter(char **text)
+{
+    char *at = *text;
+    while ((at = strstr(at, "parameter")) != NULL) {
+        bool word = at == *text || (!isalnum((unsigned char)at[-1]) && at[-1] != '_');
+        at += strlen("parameter");
+        char *end = at + strcspn(at, "=;,)");
+        if (!word || *end != '=' || !isspace((unsigned char)*at))
+            continue;
+        *text = end + 1;
+        while (isspace((unsigned char)end[-1]))
+            end--;
+        *end = '\0';
+        while (isalnum((unsigned char)end[-1]) || end[-1] == '_')
+            end--;
+        return end;
+    }
+    return NULL;
+}
+
+static char *read_text(const char *path)
+{
+    FILE *file = fopen(path, "r");
+    char *text = NULL;
+    size_t size = 0, room = 0;
+    while (file && !ferror(file) && !feof(file)) {
+        if (room - size < 4096) {
+            room = 2 * room + 8192;
+            char *more = realloc(text, room);
+            if (!more)
+                break;
+            text = more;
+        }
+        size += fread(text + size, 1, room - size - 1, file);
+        text[size] = '\0';
+    }
+    bool whole = file && feof(file);
+    if (file)
+        fclose(file);
+    if (!whole) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+/* Adds NAME=VALUE for every parameter whose value the machine says. */
+static int add_parameters(char *text, const rtl_registers *registers, char **arguments, int count)
+{
+    int64_t value;
+    for (char *name; count + 1 < MAX_ARGUMENTS && (name = next_parameter(&text)) != NULL;) {
+        char argument[128];
+        if (!rtl_parameter(registers, name, &value))
+            continue;
+        snprintf(argument, sizeof argument, "%s=%" PRId64, name, value);
+        arguments[count] = strdup(argument);
+        count += arguments[count] != NULL;
+    }
+    return count;
+}
+
+/* ---- building ---- */
+
+/* Runs the script; what it says lands in `said`, which is cut at the front when it is long. Returns its exit status. */
+static int run(char *const *arguments, char *said, size_t size)
+{
+    int ends[2];
+    size_t length = 0;
+    if (pipe(ends) != 0)
+        return RTL_ENVIRONMENT;
+    pid_t child = fork();
+    if (child == 0) {
+        dup2(ends[1], STDOUT_FILENO);
+        dup2(ends[1], STDERR_FILENO);
+        close(ends[0]);
+        close(ends[1]);
+        execv(arguments[0], arguments);
+        _exit(127);
+    }
+    close(ends[1]);
+    for (ssize_t n; child > 0 && (n = read(ends[0], said + length, size - 1 - length)) > 0;) {
+        length += (size_t)n;
+        if (length == size - 1) {
+            memmove(said, said + size / 2, length - size / 2);
+            length -= size / 2;
+        }
+    }
+    close(ends[0]);
+    said[length] = '\0';
+    int status = -1;
+    if (child > 0)
+        waitpid(child, &status, 0);
+    return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : 127;
+}
+
+static char *last_line(char *said)
+{
+    size_t length = strlen(said);
+    while (length && said[length - 1] == '\n')
+        said[--length] = '\0';
+    char *newline = strrchr(said, '\n');
+    return newline ? newline + 1 : said;
+}
+
+/* Finds the library's path, which is made when need be. */
+static rtl_status build(const rtl_source *source, const char *module, const char *file, const rtl_registers *registers,
+                        char *path, size_t size, vodr_error *error)
+{
+    char script[MAX_PATH], cache[MAX_PATH], headers[MAX_PATH], said[8192];
+    snprintf(script, sizeof script, "%s/scripts/rtl-library", source->root);
+    snprintf(cache, sizeof cache, "%s/rtl", source->build);
+    snprintf(headers, sizeof headers, "%s/gen", source->build);
+    char *text = read_text(file);
+    if (!text)
+        return rtl_fail(error, RTL_INVALID, "%s: cannot be read", file);
+    char *arguments[MAX_ARGUMENTS] = {script, cache, headers, (char *)module, (char *)file, "--trace"};
+    int fixed = source->trace ? 6 : 5, count = add_parameters(text, registers, arguments, fixed);
+    arguments[count] = NULL;
+    free(text);
+    int status = run(arguments, said, sizeof said);
+    for (int i = fixed; i < count; i++)
+        free(arguments[i]);
+    const char *last = last_line(said);
+    if (status == 0) {
+        snprintf(path, size, "%s", last);
+        return RTL_OK;
+    }
+    if (status == 127)
+        return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be run", script);
+    return rtl_fail(error, status == 2 ? RTL_INVALID : RTL_ENVIRONMENT, "%s: %s", module, last);
+}
+
+/* ---- checking ---- */
+
+const vodr_rtl_port *rtl_library_port(const rtl_library *l, const char *name)
+{
+    for (int32_t i = 0; i < l->model.port_count; i++)
+        if (strcmp(l->model.ports[i].name, name) == 0)
+            return &l->model.ports[i];
+    return NULL;
+}
+
+static rtl_status check_port(const rtl_library *l, const char *block, const char *name, bool output, int32_t width,
+                             vodr_error *error)
+{
+    const vodr_rtl_port *p = rtl_library_port(l, name);
+    const char *way = output ? "output" : "input", *s = width == 1 ? "" : "s";
+    if (!p)
+        return rtl_fail(error, RTL_INVALID, "%s: module %s has no port %s; it must have this %s, of %" PRId32 " bit%s",
+                        l->file, block, name, way, width, s);
+    if (p->output != output)
+        return rtl_fail(error, RTL_INVALID, "%s: port %s of module %s is an %s; it must be an %s, of %" PRId32 " bit%s",
+                        l->file, name, block, p->output ? "output" : "input", way, width, s);
+    if (p->width_bits != width)
+        return rtl_fail(error, RTL_INVALID,
+                        "%s: port %s of module %s has %" PRId32 " bit%s; this %s must have %" PRId32, l->file, name,
+                        block, p->width_bits, p->width_bits == 1 ? "" : "s", way, width);
+    return RTL_OK;
+}
+
+static rtl_status check_ports(const rtl_library *l, vodr_block block, const rtl_registers *registers, vodr_error *error)
+{
+    const block_signals *s = signals_of(block);
+    rtl_status status = check_port(l, s->name, "clk", false, 1, error);
+    if (status == RTL_OK)
+        status = check_port(l, s->name, "rst", false, 1, error);
+    for (int32_t i = 0; i < s->count; i++)
+        for (int32_t j = 0; status == RTL_OK && j < s->ports[i].count; j++) {
+            const signal_field *f = &s->ports[i].fields[j];
+            status =
+                check_port(l, s->name, f->name, s->ports[i].output, signal_width(f, rtl_machine(registers)), error);
+        }
+    return status;
+}
+
+static rtl_status load(const char *path, rtl_library *l, vodr_error *error)
+{
+    vodr_rtl_open_function *open = NULL;
+    l->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    void *symbol = l->handle ? dlsym(l->handle, VODR_RTL_OPEN) : NULL;
+    memcpy(&open, &symbol, sizeof open); /* a pointer to data is no pointer to a function, but here it is */
+    if (!open)
+        return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be loaded: %s", path, dlerror());
+    if (!open(&l->model))
+        return rtl_fail(error, RTL_NO_MEMORY, "no memory for the model of %s", l->file);
+    return RTL_OK;
+}
+
+rtl_status rtl_library_open(const rtl_source *source, vodr_block block, const rtl_registers *registers, rtl_library *l,
+                            vodr_error *error)
+{
+    const char *module = signals_of(block)->name;
+    char file[MAX_PATH], path[MAX_PATH];
+    *l = (rtl_library){0};
+    snprintf(file, sizeof file, "%s/rtl/%s.v", source->root, module);
+    const char *from = source->file ? source->file : file;
+    snprintf(l->file, sizeof l->file, "%s", source->file ? source->file : strrchr(file, '/') + 1);
+    rtl_status status = build(source, module, from, registers, path, sizeof path, error);
+    if (status == RTL_OK)
+        status = load(path, l, error);
+    if (status == RTL_OK)
+        status = check_ports(l, block, registers, error);
+    if (status != RTL_OK)
+        rtl_library_close(l);
+    return status;
+}
+
+void rtl_library_close(rtl_library *l)
+{
+    if (l->model.finish)
+        l->model.finish(l->model.state);
+    if (l->handle)
+        dlclose(l->handle);
+    *l = (rtl_library){0};
+}

@@ -1,0 +1,43 @@
+/* library.h - a module made into a library, loaded, and held against the ports that its block has to have. */
+#ifndef VODR_LIBRARY_H
+#define VODR_LIBRARY_H
+
+#include "registers.h"
+#include "signals.h"
+#include "vodr_rtl.h"
+
+typedef enum rtl_status {
+    RTL_OK,
+    RTL_DIFFERS,     /* Verilog and C differ, or something hangs */
+    RTL_INVALID,     /* a module, or a machine, that cannot be taken */
+    RTL_NO_MEMORY,   /* the host is out of memory */
+    RTL_ENVIRONMENT, /* there is no Verilator, the library cannot be written or loaded */
+} rtl_status;
+
+/* Where a library comes from. */
+typedef struct rtl_source {
+    const char *root;  /* of the project: its scripts/ and rtl/ */
+    const char *build; /* where it is built: its gen/ has the header that hw/ gives, its rtl/ keeps libraries */
+    const char *file;  /* the module's; NULL: ours */
+    bool trace;        /* one that writes waveforms */
+} rtl_source;
+
+typedef struct rtl_library {
+    void *handle;
+    char file[256]; /* that the module came from, as sentences call it */
+    vodr_rtl_model model;
+} rtl_library;
+
+/* Builds the library of a block's module when it is not there, and makes a model of it. To be closed on success. */
+rtl_status rtl_library_open(const rtl_source *source, vodr_block block, const rtl_registers *registers, rtl_library *l,
+                            vodr_error *error);
+void rtl_library_close(rtl_library *l);
+
+/* The model's port of this name; NULL when it has none. */
+const vodr_rtl_port *rtl_library_port(const rtl_library *l, const char *name);
+
+/* One sentence, printf-like; returns `status`. */
+rtl_status rtl_fail(vodr_error *error, rtl_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+#endif
