@@ -1,26 +1,25 @@
 // rasterizer.v - the fragments of a slice: runs of pixels, row by row from the top, left to right (Figure 2 of the paper;
-// docs/architecture.md, section 3; docs/timing.md, section 5; docs/blocks/rasterizer.md). The same as
-// cmodel/clocked_rasterizer.c.
+// docs/architecture.md, section 3; docs/timing.md, section 5).
 //
-//   slice_*       link, in: a slice's plane, the brick's borders as limits of its numerators, its bound on the screen;
-//                 last: of its visit
-//   fragment_*    link, out: a pixel and the numerators of its position; strobe visit_done: the visit's last row was gone
-//                 through; loading: a fragment is not accepted because its brick is not loaded
-//   report_*      what the block did in the last cycle; idle: nothing is left, nothing is offered
+//   port      way  what it is
+//   slice     in   link: a slice's plane, the brick's borders as limits of its numerators, its bound on the screen; last: of
+//                  its visit
+//   fragment  out  link: a pixel, and the numerators of its position; strobe visit_done: the visit's last row was gone
+//                  through; in: ready, and loading: it is not because the brick is not loaded
+//   report    out  status and idle
 //
-//   slice_*, at the pop         +------------------------+
-//   --------------------------->| narrow rows by an axis |  y0, y1      at the pop, where step_u is 0
-//                               | without step_u         |---+
-//                               +------------------------+   |
-//   +--------------------+                                   v
-//   | row: y, A at x = 0 |<-- y + 1, A + step_v -- or -- y0, origin + y0*step_v
-//   +--------------------+      |
-//                               v   a row begins: at the pop, and when the row at hand is done
-//                        +--------------+     +-------------------------------+
-//                        | narrow run   |---->| fragment_x = first of the run |--> fragment_*
-//                        | by each axis |     | fragment_a = A + x*step_u     |
-//                        +--------------+     +-------------------------------+
-//                                                ^ accepted: x + 1, a + step_u
+//   slice ──► narrow rows by each axis without step_u ──► y0, origin + y0*step_v ──┐
+//                                                                                  ▼
+//             row: y, numerators at x = 0 ──► y + 1, numerators + step_v ────────► a row begins: at the pop,
+//               ▲                                                                  │ and when one is done
+//               └──────────────────────────────────────────────────────────────────┤
+//                    ┌─────────────────────────────────────────────────────────────┘
+//                    ▼
+//             narrow its run by each axis ──► first x, numerators + x*step_u ──► fragment ──┐ accepted:
+//                                                                                   ▲      │ x + 1, numerators + step_u
+//                                                                                   └──────┘
+`include "status.vh"
+
 module rasterizer (
     input clk,
     input rst,
@@ -55,8 +54,6 @@ module rasterizer (
         at = at_0 + growth * {49'd0, steps};
     endfunction
 
-    localparam [3:0] IDLE = 0, BUSY = 1, STALLED_TEXTURE_LOAD = 4, STALLED_FRAGMENT_FIFO = 5;
-
     // ---- what happens in this cycle ----
 
     reg [14:0] x_end, y1; // behind the last pixel of the row, the last row of the slice
@@ -67,11 +64,11 @@ module rasterizer (
 
     always @(posedge clk)
         if (rst || !(rastering || slice_valid))
-            report_status <= IDLE;
+            report_status <= `STATUS_IDLE;
         else if (fragment_valid && !fragment_ready)
-            report_status <= fragment_loading ? STALLED_TEXTURE_LOAD : STALLED_FRAGMENT_FIFO;
+            report_status <= fragment_loading ? `STATUS_STALLED_TEXTURE_LOAD : `STATUS_STALLED_FRAGMENT_FIFO;
         else
-            report_status <= BUSY;
+            report_status <= `STATUS_BUSY;
 
     // ---- the slice at hand ----
 

@@ -1,26 +1,19 @@
 // slice_generator.v - cuts a brick into slices, planes parallel to the image (section 3.2 and Figure 2 of the paper;
-// docs/timing.md, section 4; docs/blocks/slice_generator.md). The same as cmodel/clocked_slice_generator.c.
+// docs/timing.md, section 4).
 //
-//   brick_*            link, in: a brick's borders in voxels, its bound on the screen, slices k0 to k1-1
-//   slice_*            link, out: a slice's plane, the brick's borders as limits of its numerators, the bound
-//   report_*           what the block did in the last cycle; idle: nothing is left, nothing is offered
-//   blend              under: the nearest slice comes first
-//   perspective .. depth_step, slice_setup_cycles    registers and parameter of that name
+//   port    way  what it is
+//   brick   in   link: a brick's borders in voxels, its bound on the screen, slices k0 to k1-1
+//   slice   out  link: a slice's plane, the brick's borders as limits of its numerators, the bound
+//   report  out  status and idle
 //
-//                 +-------------------------------------------------------------------+
-//   brick_k0, k1  |  +---+          +------------+        +---------------------+     |
-//   ------------->|->| k |----+---->| depth z(k) |--| z |>| z*step_s, u, v      |--|>|-> slice_origin, step_u, step_v
-//                 |  +---+    |     +------------+        | parallel: k*step_s  |     |
-//                 |    ^-+-1  |      at the set-up's end  +---------------------+     |
-//                 |           +----------------------------------^    push            |
-//   brick_lo, hi  |  +-----+                              +---------------------+     |
-//   ------------->|->| box |----------------------------->| (box - base)<<shift |--|>|-> slice_lo, hi
-//                 |  +-----+                              +---------------------+     |
-//   brick_x0..y1  |  +-------+                                                        |
-//   ------------->|->| bound |-------------------------------------------------- |>|----> slice_x0..y1
-//                 |  +-------+                                                        |
-//                 +-------------------------------------------------------------------+
+//   brick_k0, k1 ──► k ──┬──► z(k) ──► z ──┬─► z*step_s, z*step_u, z*step_v ──► slice_origin, step_u, step_v
+//                    ▲   │   at the end    │   parallel: k*step_s
+//                    +1  │   of set-up     │   when the slice is pushed
+//                        └─────────────────┘
+//   brick_lo, hi ──► box ────────────────────► (box - base) << shift ─────────► slice_lo, hi
+//   brick_x0..y1 ──► bound ───────────────────────────────────────────────────► slice_x0..y1
 `include "vodr_hw.vh"
+`include "status.vh"
 
 module slice_generator (
     input clk,
@@ -59,8 +52,6 @@ module slice_generator (
 );
     `include "slice_plane.vh"
 
-    localparam [3:0] IDLE = 0, BUSY = 1, STALLED_SLICE = 3;
-
     // ---- what happens in this cycle ----
 
     reg [15:0] setup_left; // cycles of work on slice k
@@ -87,9 +78,9 @@ module slice_generator (
 
     always @(posedge clk)
         if (rst || (brick_ready && !brick_valid))
-            report_status <= IDLE;
+            report_status <= `STATUS_IDLE;
         else
-            report_status <= ready_to_push && slice_valid ? STALLED_SLICE : BUSY;
+            report_status <= ready_to_push && slice_valid ? `STATUS_STALLED_SLICE : `STATUS_BUSY;
 
     // ---- the brick ----
 
