@@ -105,6 +105,8 @@ static void tick(rtl_block *b)
     }
 }
 
+/* The memory takes what was just asked for, so that a frame's last beat is written too, and answers for the next cycle.
+ */
 static void clock_memory(rtl_block *b)
 {
     memory_command command = {.read = *b->memory_ports.read,
@@ -129,9 +131,9 @@ void rtl_block_tick(rtl_block *b, const void *in)
 {
     for (int32_t i = 0; i < b->input_count; i++)
         drive(&b->inputs[i], signal_record(b->inputs[i].port, in, NULL));
+    tick(b);
     if (b->memory.storage)
         clock_memory(b);
-    tick(b);
 }
 
 void rtl_block_clock(rtl_block *b, const void *in, void *out)

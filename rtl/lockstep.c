@@ -71,16 +71,16 @@ void lockstep_compare_memory(const storage *expected, const storage *got, int64_
     difference_tell(b, a, (size_t)bytes, d->got);
 }
 
-/* The Verilog goes first: its memory takes a beat of a write before C can be granted the next. */
+/* Memories are compared where a beat was written: C wrote it with its grant, and has granted no write after it. */
 #define CLOCK(NAME, name)                                                                                              \
     static void clock_##name(void *state, const name##_in *in, name##_out *out)                                        \
     {                                                                                                                  \
         lockstep *l = state;                                                                                           \
         rtl_block_clock(&l->rtl, in, out);                                                                             \
+        l->inner.name.clock(l->inner.name.state, in, &l->expected.name);                                               \
         if (l->rtl.wrote_bytes && !l->first.found)                                                                     \
             lockstep_compare_memory(&l->behind, l->rtl.memory.storage, l->rtl.wrote_address, l->rtl.wrote_bytes,       \
                                     &l->first);                                                                        \
-        l->inner.name.clock(l->inner.name.state, in, &l->expected.name);                                               \
         if (!l->first.found)                                                                                           \
             lockstep_compare(VODR_BLOCK_##NAME, l->rtl.machine, &l->expected.name, out, &l->first);                    \
     }
