@@ -54,7 +54,7 @@ static void drive(const rtl_wire *w, const void *record)
     put(w->data, w->width_bits, value);
 }
 
-static void sample(const rtl_wire *w, void *record)
+void rtl_wire_sample(const rtl_wire *w, void *record)
 {
     char *to = (char *)record + w->field->offset;
     if (w->field->bytes <= (int16_t)sizeof(uint64_t))
@@ -92,16 +92,21 @@ static void clock_memory(rtl_block *b)
 static void sample_all(rtl_block *b, void *out)
 {
     for (int32_t i = 0; i < b->output_count; i++)
-        sample(&b->outputs[i], (char *)out + b->outputs[i].port->record);
+        rtl_wire_sample(&b->outputs[i], (char *)out + b->outputs[i].port->record);
 }
 
-void rtl_block_clock(rtl_block *b, const void *in, void *out)
+void rtl_block_tick(rtl_block *b, const void *in)
 {
     for (int32_t i = 0; i < b->input_count; i++)
         drive(&b->inputs[i], signal_record(b->inputs[i].port, in, NULL));
     if (b->memory.storage)
         clock_memory(b);
     tick(b);
+}
+
+void rtl_block_clock(rtl_block *b, const void *in, void *out)
+{
+    rtl_block_tick(b, in);
     sample_all(b, out);
 }
 
@@ -238,10 +243,11 @@ static void reset(rtl_block *b, const block_setup *setup)
     *b->rst = 1;
     for (int i = 0; i < RESET_CYCLES; i++)
         tick(b);
-    if (b->block == VODR_BLOCK_TEXTURE_UNIT)
+    const bool top = b->block == RTL_TOP;
+    if (top || b->block == VODR_BLOCK_TEXTURE_UNIT)
         load_table(b, "table_write", "table_address", "table_data", (size_t)1 << setup->machine->density_bits,
                    colour_entry, setup);
-    if (b->block == VODR_BLOCK_VOLUME_DIVIDER && walk->empty)
+    if ((top || b->block == VODR_BLOCK_VOLUME_DIVIDER) && walk->empty)
         load_table(b, "empty_write", "empty_address", "empty_data",
                    (size_t)walk->bricks[0] * (size_t)walk->bricks[1] * (size_t)walk->bricks[2], empty_entry, setup);
     tick(b);
@@ -258,7 +264,7 @@ rtl_status rtl_block_open(rtl_block *b, const rtl_source *source, vodr_block blo
     rtl_status status = rtl_library_open(source, block, registers, &b->library, error);
     if (status == RTL_OK)
         status = connect(b, registers, error);
-    if (status == RTL_OK && block == VODR_BLOCK_FRAME_BUFFER)
+    if (status == RTL_OK && (block == VODR_BLOCK_FRAME_BUFFER || block == RTL_TOP))
         status = connect_memory(b, setup, error);
     free(registers);
     if (status != RTL_OK) {

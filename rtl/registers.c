@@ -86,6 +86,7 @@ rtl_registers *rtl_registers_of(const block_setup *setup)
         r->edge_vox[c] = setup->edge_vox[c];
         r->bricks[c] = walk->bricks[c];
         r->nest[c] = walk->nest[c];
+        r->eye[c] = volume_divider_eye(walk, c);
     }
     return r;
 }
