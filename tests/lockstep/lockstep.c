@@ -14,7 +14,7 @@
 
 enum { EPISODE_TRANSACTIONS = 5000 };
 
-static const block_bench *const benches[] = {&bench_volume_divider, &bench_alpha_blender};
+static const block_bench *const benches[] = {&bench_volume_divider, &bench_texture_unit, &bench_alpha_blender};
 
 enum { BENCHES = sizeof benches / sizeof *benches };
 
