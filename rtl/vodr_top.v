@@ -26,6 +26,7 @@ module vodr_top #(
     parameter WRITE_FIFO         = `VODR_DEFAULT_WRITE_FIFO,
     parameter BLEND_CYCLES       = `VODR_DEFAULT_BLEND_CYCLES,
     parameter MEM_BUS_BYTES      = `VODR_DEFAULT_MEM_BUS_BYTES,
+    parameter BEAT_BYTES         = MEM_BUS_BYTES,
     parameter TEXTURE_BYTES      = `VODR_DEFAULT_TEXTURE_MEMORY_BYTES / 2,
     parameter FRAGMENT_ROOM      = `VODR_DEFAULT_FRAGMENT_FIFO,
     parameter EMPTY_BRICKS       = 1
@@ -271,7 +272,8 @@ module vodr_top #(
 
     texture_unit #(
         .DENSITY_BITS(DENSITY_BITS), .WEIGHT_BITS(WEIGHT_BITS), .GUARD_BITS(GUARD_BITS), .FB_BITS(FB_BITS),
-        .MEM_BUS_BYTES(MEM_BUS_BYTES), .TEXTURE_BYTES(TEXTURE_BYTES), .FRAGMENT_ROOM(FRAGMENT_ROOM)
+        .MEM_BUS_BYTES(MEM_BUS_BYTES), .BEAT_BYTES(BEAT_BYTES), .TEXTURE_BYTES(TEXTURE_BYTES),
+        .FRAGMENT_ROOM(FRAGMENT_ROOM)
     ) the_texture_unit (
         .clk(clk), .rst(rst), .brick_fresh(brick_fresh), .brick_number(brick_number), .brick_lo_x(brick_lo_x),
         .brick_lo_y(brick_lo_y), .brick_lo_z(brick_lo_z), .brick_hi_x(brick_hi_x), .brick_hi_y(brick_hi_y),
