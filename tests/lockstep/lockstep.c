@@ -14,7 +14,8 @@
 
 enum { EPISODE_TRANSACTIONS = 5000 };
 
-static const block_bench *const benches[] = {&bench_volume_divider, &bench_alpha_blender};
+static const block_bench *const benches[] = {&bench_volume_divider, &bench_slice_generator, &bench_rasterizer,
+                                             &bench_alpha_blender, &bench_frame_buffer};
 
 enum { BENCHES = sizeof benches / sizeof *benches };
 
