@@ -1,6 +1,7 @@
 /* volume_divider.c - traffic for the volume divider: nothing goes in but the slice generator's answer. What comes out
  * follows from view and machine, so an episode is a frame, and a transaction a visit or the frame's end. */
 #include "bench.h"
+#include "unit.h"
 
 /* Bricks of 5 voxels and more: volumes have 4096 of them at most, which is as many as a library knows to leave out. */
 static const char *const machines[] = {"traversal=whole",
@@ -18,6 +19,12 @@ static void draw(rng *random, vodr_machine *m)
     m->brick = (int32_t)rng_int(random, 5, rng_one_in(random, 3) ? 60 : 16);
     m->brick_setup_cycles = (int32_t)rng_int(random, 29, rng_one_in(random, 4) ? 70 : 34);
     m->cache_bytes = 256 << rng_int(random, 0, 6);
+}
+
+static void look(rng *random, test_case *scene)
+{
+    if (rng_one_in(random, 3))
+        scene->view = unit_wild_view(random, scene->input.dims_vox, rng_one_in(random, 2));
 }
 
 static void traffic(bench *b, uint64_t transactions)
@@ -41,4 +48,4 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = done < transactions ? transactions - done : 0;
 }
 
-const block_bench bench_volume_divider = {VODR_BLOCK_VOLUME_DIVIDER, machines, draw, traffic};
+const block_bench bench_volume_divider = {VODR_BLOCK_VOLUME_DIVIDER, machines, draw, look, traffic};
