@@ -1,7 +1,7 @@
 // slice_rows.vh - which rows and pixels of a slice lie in a brick, in exact integers (docs/architecture.md, section 3):
 // along a row or a column numerators grow by one step, so those between two limits are one run, and its ends are two
-// divisions, of which 14 bits matter, as there are no more pixels. Combinational; to be included inside a module, which
-// has no signal of an argument's name.
+// divisions, of which 14 bits matter, as there are no more pixels. Combinational; to be included inside a module none of
+// whose signals has the name of an argument or a local here.
 //
 // A run is {end, first}, 15 bits each: pixels first to end-1; none when first >= end.
 //
@@ -10,10 +10,9 @@
 //   run of row y      starts with the columns of the bound; each axis narrows it, by
 //                     origin + y*step_v, step_u, lo, hi
 
-// The least p >= 0 with p*size > n: floor(n/size) + 1, or 0 when n is negative; 2^14 stands for all that are more.
-function [14:0] steps_past;
-    input [63:0] n;
-    input [63:0] size; // > 0
+// The least p >= 0 with p*size > n: floor(n/size) + 1, or 0 when n is negative; 2^14 stands for all that are
+// more. size > 0.
+function [14:0] steps_past(input [63:0] n, input [63:0] size);
     reg [63:0] rest;
     reg [13:0] quotient;
     integer i;
@@ -31,12 +30,8 @@ endfunction
 
 // What is left of a run when of its pixels p only those with least <= at_0 + p*growth < limit count. Differences of
 // numerators and limits fit 64 bits, as both are below 2^62 in magnitude.
-function [29:0] narrow;
-    input [29:0] whole_run;
-    input signed [63:0] at_0;
-    input signed [63:0] growth;
-    input signed [63:0] least;
-    input signed [63:0] limit;
+function [29:0] narrow(input [29:0] whole_run, input signed [63:0] at_0, input signed [63:0] growth,
+                       input signed [63:0] least, input signed [63:0] limit);
     reg [14:0] first, behind;
     begin
         if (growth == 64'sd0) begin

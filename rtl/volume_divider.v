@@ -173,11 +173,11 @@ module volume_divider #(
     // ---- which brick that is, and whether it is left out ----
 
     // A turn's index on an axis: up to the eye's from below, then down to it from above; `under` goes away from it.
-    function [15:0] index(input [15:0] turn, input [15:0] bricks, input [15:0] eye, input outwards);
+    function [15:0] brick_index(input [15:0] turn, input [15:0] bricks, input [15:0] eye, input outwards);
         reg [15:0] place;
         begin
             place = outwards ? bricks - 16'd1 - turn : turn;
-            index = place < eye ? place : bricks - 16'd1 + eye - place;
+            brick_index = place < eye ? place : bricks - 16'd1 + eye - place;
         end
     endfunction
 
@@ -196,9 +196,9 @@ module volume_divider #(
     always @* begin
         {then_x, then_y, then_z, then_number} = 96'd0;
         if (rst || moves) begin
-            then_x = index(turn_of(2'd0, nest_0, nest_1, turns), bricks_x, eye_x, under);
-            then_y = index(turn_of(2'd1, nest_0, nest_1, turns), bricks_y, eye_y, under);
-            then_z = index(turn_of(2'd2, nest_0, nest_1, turns), bricks_z, eye_z, under);
+            then_x = brick_index(turn_of(2'd0, nest_0, nest_1, turns), bricks_x, eye_x, under);
+            then_y = brick_index(turn_of(2'd1, nest_0, nest_1, turns), bricks_y, eye_y, under);
+            then_z = brick_index(turn_of(2'd2, nest_0, nest_1, turns), bricks_z, eye_z, under);
             then_number = ({32'd0, then_z} * {32'd0, bricks_y} + {32'd0, then_y}) * {32'd0, bricks_x} + {32'd0, then_x};
         end
     end

@@ -47,4 +47,7 @@ uint64_t bench_bits(rng *random, int32_t bits);
 extern const block_bench bench_volume_divider, bench_slice_generator, bench_rasterizer, bench_texture_unit,
     bench_alpha_blender, bench_pixel_cache, bench_frame_buffer;
 
+/* Tests of arithmetic, on all operands. */
+void lockstep_lerp(void **state);
+
 #endif

@@ -1,6 +1,7 @@
 /* lockstep.c - runs the lock-step benches.
  *   lockstep [--transactions N] [--seed S] [BLOCK]...    20,000 transactions a machine of every block, from seed 1
- * A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
+ *   lockstep lerp                                        arithmetic alone, of all operands; without a name it is run
+ * too A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,8 +15,11 @@
 
 enum { EPISODE_TRANSACTIONS = 5000 };
 
-static const block_bench *const benches[] = {&bench_volume_divider, &bench_alpha_blender};
+static const block_bench *const benches[] = {&bench_volume_divider, &bench_texture_unit, &bench_alpha_blender};
 
+static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp}};
+
+enum { EXHAUSTIVE = sizeof exhaustive / sizeof *exhaustive };
 enum { BENCHES = sizeof benches / sizeof *benches };
 
 static uint64_t transactions = 20000, first_seed = 1;
@@ -139,7 +143,7 @@ static bool named(const char *name, int argc, char **argv, int first)
 
 int main(int argc, char **argv)
 {
-    struct CMUnitTest tests[BENCHES];
+    struct CMUnitTest tests[BENCHES + EXHAUSTIVE];
     size_t count = 0;
     int first = 1;
     for (; first + 1 < argc && strncmp(argv[first], "--", 2) == 0; first += 2) {
@@ -157,6 +161,11 @@ int main(int argc, char **argv)
         if (named(name, argc, argv, first)) {
             tests[count++] =
                 (struct CMUnitTest){.name = name, .test_func = test_block, .initial_state = (void *)benches[i]};
+        }
+    }
+    for (size_t i = 0; i < EXHAUSTIVE; i++) {
+        if (named(exhaustive[i].name, argc, argv, first)) {
+            tests[count++] = exhaustive[i];
         }
     }
     if (!count) {
