@@ -63,7 +63,7 @@ demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in bu
 	@$(MAKE) -s $(PARALLEL) all $(BUILD)/bench/table_vodr
 	@scripts/demo $(BUILD)
 
-tests: $(TESTS) $(BENCHES)
+tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep
 
 check: ## run every test; the last line is `N passed, N failed`
 	@scripts/deps check fuzz
@@ -187,7 +187,8 @@ $(BUILD)/librtl.a: $(RTL)
 	ar rcs $@ $^
 
 # Where co-simulation finds what it builds libraries of, and keeps them.
-$(BUILD)/host/cosim_options.o: STRICT += -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
+WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
+$(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
@@ -207,6 +208,12 @@ $(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
 
 $(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
+
+LOCKSTEP := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lockstep/*.c))
+$(LOCKSTEP): STRICT += $(WHERE)
+
+$(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib

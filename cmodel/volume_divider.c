@@ -72,34 +72,23 @@ static void choose_nest(volume_divider *d, bool column)
     d->nest[column ? 2 : 0] = dominant;
 }
 
-/* The eye's brick index along an axis, -1 below the volume and `count` above it. */
-static int32_t eye_index(const volume_divider *d, int c, int32_t count)
+int32_t volume_divider_eye(const volume_divider *d, int c)
 {
-    int64_t eye_vox = d->view->base[c] >> VODR_POSITION_BITS;
+    int64_t last_vox = d->dims_vox[c] - 1, eye_vox = d->view->step_s[c] >= 0 ? last_vox : 0;
+    if (d->view->perspective)
+        eye_vox = d->view->base[c] >> VODR_POSITION_BITS;
     if (eye_vox < 0)
-        return -1;
-    return eye_vox >= d->dims_vox[c] ? count : (int32_t)(eye_vox / d->edge_vox[c]);
+        return 0;
+    return (int32_t)((eye_vox < last_vox ? eye_vox : last_vox) / d->edge_vox[c]);
 }
 
+/* Up to the eye's brick from below, then down to it from above. */
 static void fill_order(volume_divider *d, int c, bool front_to_back)
 {
-    int32_t count = d->bricks[c], *order = d->order[c], n = 0;
-    if (d->view->perspective) {
-        int32_t eye = eye_index(d, c, count);
-        for (int32_t i = 0; i < eye; i++)
-            order[n++] = i;
-        for (int32_t i = count - 1; i > eye; i--)
-            order[n++] = i;
-        if (n < count)
-            order[n] = eye;
-    } else {
-        for (int32_t i = 0; i < count; i++)
-            order[i] = d->view->step_s[c] >= 0 ? i : count - 1 - i;
-    }
-    for (int32_t i = 0; front_to_back && i < count / 2; i++) {
-        int32_t swap = order[i];
-        order[i] = order[count - 1 - i];
-        order[count - 1 - i] = swap;
+    int32_t count = d->bricks[c], eye = volume_divider_eye(d, c);
+    for (int32_t i = 0; i < count; i++) {
+        int32_t place = front_to_back ? count - 1 - i : i;
+        d->order[c][i] = place < eye ? place : count - 1 + eye - place;
     }
 }
 

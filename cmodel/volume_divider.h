@@ -50,6 +50,11 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
                                  const vodr_view *view, const int32_t edge_vox[3], const px_rect *window,
                                  const int32_t *transparent_to, vodr_error *error);
 
+/* The index that axis c is walked towards from both ends, and visited last; in `under` it is the first. In perspective
+ * that of the eye's brick or, where the eye is beyond the volume, of the nearest; in parallel views that of the nearest
+ * end. */
+int32_t volume_divider_eye(const volume_divider *d, int c);
+
 /* The next candidate in visibility order; false after the last, and from then on. */
 bool volume_divider_next(volume_divider *d, candidate *c);
 

@@ -9,7 +9,7 @@ static const char *const block_names[VODR_BLOCK_COUNT + 1] = {
     "alpha_blender",  "pixel_cache",     "frame_buffer", NULL};
 
 #define RTL_FORM                                                                                                       \
-    "all, or some of volume_divider, slice_generator, rasterizer, texture_unit, alpha_blender, pixel_cache, "          \
+    "all, top, or some of volume_divider, slice_generator, rasterizer, texture_unit, alpha_blender, pixel_cache, "     \
     "frame_buffer with commas between, each once, each perhaps with =FILE.v"
 
 static host_status set_block(cosim_choice *c, const option *o, char *word, host_error *error)
@@ -39,6 +39,10 @@ static host_status set_rtl(void *target, const option *o, const char *value, hos
             c->cosim.replaced[b] = true;
         return HOST_OK;
     }
+    if (strcmp(value, "top") == 0) {
+        c->cosim.top = true;
+        return HOST_OK;
+    }
     c->words = strdup(value);
     if (!c->words)
         return host_fail(error, HOST_ENVIRONMENT, "no memory");
@@ -65,8 +69,9 @@ static host_status set_compare(void *target, const option *o, const char *value,
 
 static const option rows[] = {
     {"rtl", 0, "BLOCKS", false, set_rtl,
-     "blocks in Verilog, in lock-step with the model: all, or BLOCK[=FILE.v],...\n"
-     "FILE.v is a block of yours with our ports (docs/cosimulation.md); counts cycles too"},
+     "blocks in Verilog, in lock-step with the model: all, BLOCK[=FILE.v],..., or top, all\n"
+     "as one model; FILE.v is a block of yours with our ports (docs/cosimulation.md);\n"
+     "counts cycles too"},
     {"compare", 0, "WHAT", false, set_compare, "with --rtl, what has to be equal: cycles, transactions (cycles)"},
 };
 const option_table option_cosim = {"Co-simulation (needs verilator and g++):", rows, sizeof rows / sizeof *rows};

@@ -6,7 +6,7 @@
 #include "external_memory.h"
 #include "library.h"
 
-enum { RTL_MAX_WIRES = 40 };
+enum { RTL_MAX_WIRES = 64 };
 
 /* One field of a port and where the model keeps it. */
 typedef struct rtl_wire {
@@ -40,6 +40,12 @@ typedef struct rtl_block {
  * closed on success; outlives the setup but neither its machine nor its storage. */
 rtl_status rtl_block_open(rtl_block *b, const rtl_source *source, vodr_block block, const block_setup *setup, void *out,
                           vodr_error *error);
+
+/* A cycle without its outputs. */
+void rtl_block_tick(rtl_block *b, const void *in);
+
+/* Writes what an output holds into its port's record. */
+void rtl_wire_sample(const rtl_wire *w, void *record);
 
 /* A cycle: `in` and `out` are the block's records (blocks.h). */
 void rtl_block_clock(rtl_block *b, const void *in, void *out);

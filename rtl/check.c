@@ -30,7 +30,7 @@ static bool is_fixed(const vodr_machine *m)
     }
 
 static const bound bounds[] = {
-    BOUND(VOLUME_DIVIDER, brick_setup_cycles, 32, 65535, NULL),
+    BOUND(VOLUME_DIVIDER, brick_setup_cycles, 29, 65535, NULL),
     BOUND(FRAME_BUFFER, mem_latency_cycles, 3, 65535, is_fixed),
     BOUND(FRAME_BUFFER, dram_tcas_cycles, 3, 255, is_dram),
 };

@@ -6,7 +6,11 @@
 
 #include "clocked.h"
 #include "lockstep.h"
+#include "pipeline.h"
 #include "place.h"
+#include "top.h"
+#include "transactions.h"
+#include "watchdog.h"
 #include "waveform.h"
 
 enum { PROGRESS_CYCLES = 1 << 14, NO_BLOCK = VODR_BLOCK_COUNT };
@@ -19,26 +23,37 @@ typedef struct inputs {
     const vodr_view *view;
 } inputs;
 
-/* A machine whose blocks are partly in Verilog. */
+/* A machine whose blocks are partly in Verilog: of each block one of the two is there, or neither. */
 typedef struct cosim {
     clocked *machine;
-    lockstep *blocks[VODR_BLOCK_COUNT]; /* NULL: in C */
+    lockstep *steps[VODR_BLOCK_COUNT];
+    transactions *streams[VODR_BLOCK_COUNT];
+    top *top; /* instead of both */
+    transactions_reference reference;
     places places;
+    watchdog watchdog;
+    uint64_t limit; /* of cycles without a move */
     uint64_t cycle; /* the next */
 } cosim;
 
 static void cosim_close(cosim *c)
 {
     for (int b = 0; b < VODR_BLOCK_COUNT; b++) {
-        if (c->blocks[b])
-            lockstep_close(c->blocks[b], clocked_faces(c->machine));
-        free(c->blocks[b]);
+        if (c->steps[b])
+            lockstep_close(c->steps[b], clocked_faces(c->machine));
+        free(c->steps[b]);
+        if (c->streams[b])
+            transactions_close(c->streams[b]);
     }
+    if (c->top)
+        top_close(c->top);
+    free(c->top);
     places_finish(&c->places);
     clocked_free(c->machine);
+    clocked_free(c->reference.machine);
 }
 
-static rtl_status replace(cosim *c, vodr_block block, const rtl_source *source, vodr_error *error)
+static rtl_status step_with(cosim *c, vodr_block block, const rtl_source *source, vodr_error *error)
 {
     lockstep *l = calloc(1, sizeof *l);
     if (!l)
@@ -46,70 +61,132 @@ static rtl_status replace(cosim *c, vodr_block block, const rtl_source *source, 
     rtl_status status = lockstep_open(l, source, block, clocked_setup(c->machine), clocked_faces(c->machine),
                                       clocked_reset(c->machine), error);
     if (status == RTL_OK)
-        c->blocks[block] = l;
+        c->steps[block] = l;
     else
         free(l);
     return status;
 }
 
+static rtl_status step_top(cosim *c, const rtl_source *source, vodr_error *error)
+{
+    top *t = calloc(1, sizeof *t);
+    if (!t)
+        return rtl_fail(error, RTL_NO_MEMORY, "no memory for vodr_top");
+    rtl_status status = top_open(t, source, c->machine, error);
+    if (status == RTL_OK)
+        c->top = t;
+    else
+        free(t);
+    return status;
+}
+
+static rtl_status start(clocked **machine, const inputs *in, const vodr_observer *observer, vodr_error *error)
+{
+    vodr_status status = clocked_start(machine, in->machine, in->volume, in->table, in->view, observer, error);
+    return status == VODR_OK ? RTL_OK : status == VODR_NO_MEMORY ? RTL_NO_MEMORY : RTL_INVALID;
+}
+
 /* `traced` is a block whose library can write waveforms, or NO_BLOCK. To be closed in either case. */
 static rtl_status cosim_open(cosim *c, const inputs *in, const cosim_options *o, int traced, vodr_error *error)
 {
-    *c = (cosim){0};
+    *c = (cosim){.limit = watchdog_limit(in->machine)};
+    bool by_cycles = o->compare == COSIM_CYCLES;
     rtl_status status = RTL_OK;
+    if (pipeline_check(in->machine, in->volume, in->view, error) != VODR_OK)
+        return RTL_INVALID;
     for (int b = 0; status == RTL_OK && b < VODR_BLOCK_COUNT; b++)
-        if (o->replaced[b])
+        if (o->replaced[b] || o->top)
             status = cosim_check((vodr_block)b, in->machine, error);
-    if (status != RTL_OK)
-        return status;
-    const vodr_observer *observer = traced == NO_BLOCK ? o->observer : NULL;
-    vodr_status started = clocked_start(&c->machine, in->machine, in->volume, in->table, in->view, observer, error);
-    if (started != VODR_OK)
-        return started == VODR_NO_MEMORY ? RTL_NO_MEMORY : RTL_INVALID;
+    if (status == RTL_OK)
+        status = start(&c->machine, in, traced == NO_BLOCK ? o->observer : NULL, error);
+    if (status == RTL_OK && (!by_cycles || o->top))
+        status = start(&c->reference.machine, in, NULL, error);
+    if (status == RTL_OK && o->top)
+        return step_top(c, &(rtl_source){.root = o->root, .build = o->build, .trace = traced != NO_BLOCK}, error);
     for (int b = 0; status == RTL_OK && b < VODR_BLOCK_COUNT; b++) {
         const rtl_source source = {.root = o->root, .build = o->build, .file = o->files[b], .trace = b == traced};
-        if (o->replaced[b])
-            status = replace(c, (vodr_block)b, &source, error);
+        if (!o->replaced[b])
+            continue;
+        status = by_cycles
+                     ? step_with(c, (vodr_block)b, &source, error)
+                     : transactions_open(&c->streams[b], &source, (vodr_block)b, c->machine, &c->reference, error);
     }
     return status;
+}
+
+/* What a block in Verilog did differently by now. */
+static const difference *difference_of(const cosim *c, int block)
+{
+    return c->top ? &c->top->first : c->steps[block] ? &c->steps[block]->first : transactions_first(c->streams[block]);
 }
 
 /* The first block whose Verilog differs by now; NO_BLOCK when none does. */
 static int differing(const cosim *c)
 {
+    if (c->top && c->top->first.found)
+        return c->top->block;
     for (int b = 0; b < VODR_BLOCK_COUNT; b++)
-        if (c->blocks[b] && c->blocks[b]->first.found)
+        if ((c->steps[b] || c->streams[b]) && difference_of(c, b)->found)
             return b;
     return NO_BLOCK;
+}
+
+/* After the last cycle: whether something is missing. */
+static void end(cosim *c)
+{
+    if (c->top)
+        top_end(c->top, c->reference.machine);
+    for (int b = 0; b < VODR_BLOCK_COUNT; b++) {
+        if (c->steps[b])
+            lockstep_end(c->steps[b]);
+        if (c->streams[b])
+            transactions_end(c->streams[b]);
+    }
 }
 
 /* One cycle; false when there was nothing left to do. */
 static bool step(cosim *c)
 {
     const block_outs *before = clocked_outs(c->machine);
-    bool left = clocked_step(c->machine, NULL);
+    bool left = c->top ? top_step(c->top) : clocked_step(c->machine, NULL);
+    if (c->top) {
+        clocked_step(c->reference.machine, NULL);
+        top_compare(c->top, c->reference.machine);
+    }
     places_cycle(&c->places, before, clocked_outs(c->machine));
+    watchdog_cycle(&c->watchdog, c->cycle, before, clocked_outs(c->machine));
     c->cycle++;
     return left;
 }
 
-/* Draws until the frame is done or a block differs, which is returned. */
+static bool hangs(const cosim *c)
+{
+    return c->cycle - c->watchdog.moved > c->limit;
+}
+
+/* Draws until the frame is done, a block differs, which is returned, or nothing moves any more. */
 static int draw(cosim *c, const cosim_options *o)
 {
     int block = differing(c);
     bool left = true;
-    while (block == NO_BLOCK && left) {
+    while (block == NO_BLOCK && left && !hangs(c)) {
         left = step(c);
         block = differing(c);
         if (o->progress && c->cycle % PROGRESS_CYCLES == 0)
             o->progress(o->progress_context, clocked_done(c->machine));
     }
-    if (block == NO_BLOCK && c->blocks[VODR_BLOCK_FRAME_BUFFER] && !lockstep_end(c->blocks[VODR_BLOCK_FRAME_BUFFER]))
-        block = VODR_BLOCK_FRAME_BUFFER;
-    return block;
+    if (block != NO_BLOCK || left)
+        return block;
+    end(c);
+    return differing(c);
 }
 
 /* ---- a difference ---- */
+
+static rtl_block *block_of(const cosim *c, int block)
+{
+    return c->top ? &c->top->rtl : c->steps[block] ? &c->steps[block]->rtl : transactions_block(c->streams[block]);
+}
 
 /* Draws the frame again up to the difference, and a little beyond, with the block's signals written down. */
 static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int block, const difference *d,
@@ -119,7 +196,7 @@ static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int bl
     waveform w;
     rtl_status status = cosim_open(&c, in, o, block, error);
     if (status == RTL_OK)
-        status = waveform_open(&w, o->waveform, c.blocks[block], d, cycle, error);
+        status = waveform_open(&w, o->waveform, block_of(&c, block), d, cycle, error);
     bool left = status == RTL_OK;
     while (left && c.cycle < w.end_cycle) {
         waveform_cycle(&w, c.cycle);
@@ -131,7 +208,7 @@ static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int bl
 
 static rtl_status tell_difference(cosim *c, const inputs *in, const cosim_options *o, int block, vodr_error *error)
 {
-    const difference d = c->blocks[block]->first;
+    const difference d = *difference_of(c, block);
     const place p = places_of(&c->places, (vodr_block)block);
     const uint64_t cycle = c->cycle ? c->cycle - 1 : 0;
     char where[120], waveform_note[160] = "";
@@ -148,6 +225,12 @@ static rtl_status tell_difference(cosim *c, const inputs *in, const cosim_option
                     d.field->name, d.expected, d.got, where, waveform_note);
 }
 
+static rtl_status tell_hanging(const cosim *c, vodr_error *error)
+{
+    watchdog_tell(&c->watchdog, clocked_outs(c->machine), error->text, sizeof error->text);
+    return RTL_DIFFERS;
+}
+
 rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                         const vodr_view *view, const cosim_options *options, vodr_frame *frame, vodr_counters *counters,
                         vodr_error *error)
@@ -162,6 +245,8 @@ rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, 
         block = draw(&c, options);
     if (block != NO_BLOCK)
         status = tell_difference(&c, &in, options, block, error);
+    else if (status == RTL_OK && hangs(&c))
+        status = tell_hanging(&c, error);
     if (status == RTL_OK && c.places.failed)
         status = rtl_fail(error, RTL_NO_MEMORY, "no memory for the fragments under way");
     if (status == RTL_OK && clocked_readout(c.machine, frame, counters, error) != VODR_OK)

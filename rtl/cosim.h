@@ -14,8 +14,9 @@ typedef struct cosim_options {
     const char *root, *build;            /* see rtl_source */
     bool replaced[VODR_BLOCK_COUNT];     /* which blocks are in Verilog, */
     const char *files[VODR_BLOCK_COUNT]; /* and from which file; NULL: ours */
-    cosim_compare compare;
-    const char *waveform; /* where a difference leaves its waveform, without ".fst"; NULL: nowhere */
+    bool top;                            /* instead, all of them as one model, vodr_top.v */
+    cosim_compare compare;               /* of blocks; vodr_top is held against cycles */
+    const char *waveform;                /* where a difference leaves its waveform, without ".fst"; NULL: nowhere */
     void (*progress)(void *context, double done);
     void *progress_context;
     const vodr_observer *observer;

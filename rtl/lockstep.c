@@ -6,19 +6,7 @@
 
 /* ---- comparison ---- */
 
-/* Bytes of a field that mean anything. */
-static size_t meant_bytes(const signal_field *f, const vodr_machine *machine, const void *record)
-{
-    int32_t bytes = (signal_width(f, machine) + 7) / 8, length;
-    if (f->length != SIGNAL_WHOLE) {
-        memcpy(&length, (const char *)record + f->length, sizeof length);
-        bytes = length < bytes ? length : bytes;
-    }
-    return (size_t)(bytes < f->bytes ? bytes : f->bytes);
-}
-
-/* A value in decimal, or in hexadecimal when it is long: as much of it, around the first byte that differs, as fits. */
-static void tell(const uint8_t *value, const uint8_t *other, size_t bytes, char *text)
+void difference_tell(const uint8_t *value, const uint8_t *other, size_t bytes, char text[DIFFERENCE_CHARS])
 {
     uint64_t number = 0;
     size_t first = 0, shown;
@@ -44,12 +32,12 @@ static bool compare_fields(const signal_port *p, bool always, const vodr_machine
         const uint8_t *a = (const uint8_t *)expected + f->offset, *b = (const uint8_t *)got + f->offset;
         if ((f->when == SIGNAL_ALWAYS) != always || !signal_counts(f, expected))
             continue;
-        size_t bytes = meant_bytes(f, machine, expected);
+        size_t bytes = signal_bytes(f, machine, expected);
         if (memcmp(a, b, bytes) == 0)
             continue;
         *d = (difference){.found = true, .port = p, .field = f};
-        tell(a, b, bytes, d->expected);
-        tell(b, a, bytes, d->got);
+        difference_tell(a, b, bytes, d->expected);
+        difference_tell(b, a, bytes, d->got);
         return false;
     }
     return true;
@@ -71,49 +59,39 @@ bool lockstep_compare(vodr_block block, const vodr_machine *machine, const void 
 
 /* ---- faces ---- */
 
-#define BLOCKS(DO)                                                                                                     \
-    DO(VOLUME_DIVIDER, volume_divider)                                                                                 \
-    DO(SLICE_GENERATOR, slice_generator)                                                                               \
-    DO(RASTERIZER, rasterizer)                                                                                         \
-    DO(TEXTURE_UNIT, texture_unit)                                                                                     \
-    DO(ALPHA_BLENDER, alpha_blender)                                                                                   \
-    DO(PIXEL_CACHE, pixel_cache)                                                                                       \
-    DO(FRAME_BUFFER, frame_buffer)
-
-/* What is left in memory, compared with what C left there. */
-static const signal_field memory_field = {.name = "memory_write_data", .when = SIGNAL_ALWAYS, .length = SIGNAL_WHOLE};
-
-static void compare_memory(lockstep *l, int64_t address, int64_t bytes)
+void lockstep_compare_memory(const storage *expected, const storage *got, int64_t address, int64_t bytes, difference *d)
 {
-    const storage *mine = l->rtl.memory.storage;
-    const uint8_t *expected = l->behind.lines + address, *got = mine->lines + address;
-    if (l->first.found || memcmp(expected, got, (size_t)bytes) == 0)
+    static const signal_field memory_field = {.name = "memory_write_data", .when = SIGNAL_ALWAYS};
+    static const signal_port memory_port = {.fields = &memory_field, .count = 1, .output = true};
+    const uint8_t *a = expected->lines + address, *b = got->lines + address;
+    if (memcmp(a, b, (size_t)bytes) == 0)
         return;
-    l->first = (difference){.found = true, .field = &memory_field};
-    tell(expected, got, (size_t)bytes, l->first.expected);
-    tell(got, expected, (size_t)bytes, l->first.got);
+    *d = (difference){.found = true, .port = &memory_port, .field = &memory_field};
+    difference_tell(a, b, (size_t)bytes, d->expected);
+    difference_tell(b, a, (size_t)bytes, d->got);
 }
 
-/* The Verilog goes first: its memory takes a beat of a write before C can be granted the next. */
+/* Memories are compared where a beat was written: C wrote it with its grant, and has granted no write after it. */
 #define CLOCK(NAME, name)                                                                                              \
     static void clock_##name(void *state, const name##_in *in, name##_out *out)                                        \
     {                                                                                                                  \
         lockstep *l = state;                                                                                           \
         rtl_block_clock(&l->rtl, in, out);                                                                             \
-        if (l->rtl.wrote_bytes)                                                                                        \
-            compare_memory(l, l->rtl.wrote_address, l->rtl.wrote_bytes);                                               \
         l->inner.name.clock(l->inner.name.state, in, &l->expected.name);                                               \
+        if (l->rtl.wrote_bytes && !l->first.found)                                                                     \
+            lockstep_compare_memory(&l->behind, l->rtl.memory.storage, l->rtl.wrote_address, l->rtl.wrote_bytes,       \
+                                    &l->first);                                                                        \
         if (!l->first.found)                                                                                           \
             lockstep_compare(VODR_BLOCK_##NAME, l->rtl.machine, &l->expected.name, out, &l->first);                    \
     }
-BLOCKS(CLOCK)
+LOCKSTEP_BLOCKS(CLOCK)
 
 void *lockstep_out(vodr_block block, block_outs *outs)
 {
 #define OUT(NAME, name)                                                                                                \
     if (block == VODR_BLOCK_##NAME)                                                                                    \
         return &outs->name;
-    BLOCKS(OUT)
+    LOCKSTEP_BLOCKS(OUT)
     return NULL;
 }
 
@@ -148,7 +126,7 @@ rtl_status lockstep_open(lockstep *l, const rtl_source *source, vodr_block block
         l->inner.name = faces->name;                                                                                   \
         faces->name = (name##_face){.state = l, .clock = clock_##name};                                                \
     }
-    BLOCKS(TAKE)
+    LOCKSTEP_BLOCKS(TAKE)
     return RTL_OK;
 }
 
@@ -157,14 +135,14 @@ void lockstep_close(lockstep *l, block_faces *faces)
 #define GIVE(NAME, name)                                                                                               \
     if (l->rtl.block == VODR_BLOCK_##NAME)                                                                             \
         faces->name = l->inner.name;
-    BLOCKS(GIVE)
+    LOCKSTEP_BLOCKS(GIVE)
     rtl_block_close(&l->rtl);
     storage_finish(&l->behind);
 }
 
 bool lockstep_end(lockstep *l)
 {
-    if (l->behind.lines)
-        compare_memory(l, 0, l->behind.texture_base);
+    if (l->behind.lines && !l->first.found)
+        lockstep_compare_memory(&l->behind, l->rtl.memory.storage, 0, l->behind.texture_base, &l->first);
     return !l->first.found;
 }

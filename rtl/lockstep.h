@@ -15,6 +15,24 @@ typedef struct difference {
     char expected[DIFFERENCE_CHARS], got[DIFFERENCE_CHARS]; /* as text */
 } difference;
 
+/* Bytes as text: in decimal, or in hexadecimal when they are many, from the first on that differs from another's. */
+void difference_tell(const uint8_t *value, const uint8_t *other, size_t bytes, char text[DIFFERENCE_CHARS]);
+
+/* Compares what two memories hold of the frame buffer; the first difference is told in *d, which is left alone when
+ * there is none. */
+void lockstep_compare_memory(const storage *expected, const storage *got, int64_t address, int64_t bytes,
+                             difference *d);
+
+/* DO(NAME, name) for each block. */
+#define LOCKSTEP_BLOCKS(DO)                                                                                            \
+    DO(VOLUME_DIVIDER, volume_divider)                                                                                 \
+    DO(SLICE_GENERATOR, slice_generator)                                                                               \
+    DO(RASTERIZER, rasterizer)                                                                                         \
+    DO(TEXTURE_UNIT, texture_unit)                                                                                     \
+    DO(ALPHA_BLENDER, alpha_blender)                                                                                   \
+    DO(PIXEL_CACHE, pixel_cache)                                                                                       \
+    DO(FRAME_BUFFER, frame_buffer)
+
 typedef struct lockstep {
     rtl_block rtl;
     block_faces inner;   /* the C block, in its place */

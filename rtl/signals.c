@@ -1,6 +1,7 @@
 #include "signals.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "layout.h"
 
@@ -20,7 +21,7 @@
 
 /* Fields that some block does not have stand at either end. */
 
-enum { BRICK_BOX = 2, BRICK_SEEN = 8, COLOUR_CACHED = 1, COLOUR_BLENDED = 3, DOOR_TEXTURE = 2 };
+enum { BRICK_BOX = 2, BRICK_SEEN = 8, COLOUR_CACHED = 1, COLOUR_BLENDED = 3, DOOR_TEXTURE = 2, SLICE_DRAWN = 1 };
 
 static const signal_field brick[] = {
     ALWAYS(brick_port, "brick_fresh", fresh, 1), VALID(brick_port, "brick_number", brick, 48),
@@ -30,9 +31,9 @@ static const signal_field brick[] = {
 };
 static const signal_field brick_ready[] = {ALWAYS(ready_port, "brick_ready", ready, 1)};
 static const signal_field slice[] = {
+    VALID(slice_port, "slice_k", slice.k, 15),
     ALWAYS(slice_port, "slice_valid", valid, 1),
     VALID(slice_port, "slice_last", last, 1),
-    VALID(slice_port, "slice_k", slice.k, 15),
     AXES(slice_port, "slice_origin", slice.plane.origin, 64),
     AXES(slice_port, "slice_step_u", slice.plane.step_u, 64),
     AXES(slice_port, "slice_step_v", slice.plane.step_v, 64),
@@ -126,8 +127,11 @@ static const signal_port slice_generator[] = {
     OUT(slice_generator, report, report),
 };
 static const signal_port rasterizer[] = {
-    IN(rasterizer, slice, slice),        IN(rasterizer, accept, fragment), OUT(rasterizer, slice_ready, slice),
-    OUT(rasterizer, fragment, fragment), OUT(rasterizer, report, report),
+    SOME(slice, SLICE_DRAWN, COUNT(slice), false, offsetof(rasterizer_in, slice)),
+    IN(rasterizer, accept, fragment),
+    OUT(rasterizer, slice_ready, slice),
+    OUT(rasterizer, fragment, fragment),
+    OUT(rasterizer, report, report),
 };
 static const signal_port texture_unit[] = {
     SOME(brick, 0, BRICK_SEEN, false, offsetof(texture_unit_in, brick)),
@@ -170,9 +174,72 @@ static const signal_port frame_buffer[] = {
     OUT(frame_buffer, report, report),
 };
 
+/* ---- vodr_top ---- */
+
+#define REPORT(block)                                                                                                  \
+    {                                                                                                                  \
+        ALWAYS(report_port, #block "_status", status, 4), ALWAYS(report_port, #block "_idle", idle, 1)                 \
+    }
+static const signal_field reports[][2] = {REPORT(volume_divider), REPORT(slice_generator), REPORT(rasterizer),
+                                          REPORT(texture_unit),   REPORT(alpha_blender),   REPORT(pixel_cache),
+                                          REPORT(frame_buffer)};
+
+/* Fields that vodr_top shows stand together but for these. */
+static const signal_field top_slice[] = {ALWAYS(slice_port, "slice_valid", valid, 1),
+                                         VALID(slice_port, "slice_k", slice.k, 15)};
+static const signal_field top_bounds[] = {RECTANGLE(brick_port, "brick", bound)};
+static const signal_field top_load[] = {ALWAYS(load_port, "load_valid", valid, 1),
+                                        VALID(load_port, "load_bytes", bytes, 32)};
+static const signal_field top_blended[] = {ALWAYS(blended_port, "blended_valid", valid, 1),
+                                           VALID(blended_port, "blended_writes", writes, 1)};
+static const signal_field top_write[] = {ALWAYS(write_port, "write_valid", valid, 1),
+                                         VALID(write_port, "write_bytes", bytes, 14)};
+
+#define SHOWN(fields, first, end, member) SOME(fields, first, end, true, offsetof(block_outs, member))
+#define ALL(fields, member) SHOWN(fields, 0, COUNT(fields), member)
+
+enum { BRICK_TOLD = 8, FRAGMENT_TOLD = 4 };
+
+static const signal_port vodr_top[] = {
+    {voxels, COUNT(voxels), false, offsetof(texture_unit_in, voxels)},
+    SHOWN(brick, 0, BRICK_TOLD, volume_divider.brick),
+    ALL(top_bounds, volume_divider.brick),
+    ALL(reports[0], volume_divider.report),
+    ALL(top_slice, slice_generator.slice),
+    ALL(reports[1], slice_generator.report),
+    ALL(slice_ready, rasterizer.slice),
+    SHOWN(fragment, 0, FRAGMENT_TOLD, rasterizer.fragment),
+    ALL(reports[2], rasterizer.report),
+    SHOWN(accept, 0, 1, texture_unit.fragment),
+    ALL(top_load, texture_unit.load),
+    ALL(fetch, texture_unit.fetch),
+    ALL(reports[3], texture_unit.report),
+    ALL(top_blended, alpha_blender.blended),
+    ALL(reports[4], alpha_blender.report),
+    SHOWN(door, 1, DOOR_TEXTURE, pixel_cache.door),
+    ALL(look_up, pixel_cache.look_up),
+    SHOWN(pixel, 0, 1, pixel_cache.pixel),
+    SHOWN(fill, 0, 1, pixel_cache.fill),
+    ALL(top_write, pixel_cache.write),
+    ALL(reports[5], pixel_cache.report),
+    SHOWN(loaded, 0, 1, frame_buffer.load),
+    ALL(reports[6], frame_buffer.report),
+};
+
+int32_t rtl_top_record(vodr_block block)
+{
+    static const size_t records[VODR_BLOCK_COUNT + 1] = {
+        offsetof(block_outs, volume_divider), offsetof(block_outs, slice_generator), offsetof(block_outs, rasterizer),
+        offsetof(block_outs, texture_unit),   offsetof(block_outs, alpha_blender),   offsetof(block_outs, pixel_cache),
+        offsetof(block_outs, frame_buffer),   offsetof(block_outs, voxel_memory)};
+    return (int32_t)records[block];
+}
+
+/* ---- all ---- */
+
 const block_signals *signals_of(vodr_block block)
 {
-    static const block_signals blocks[VODR_BLOCK_COUNT] = {
+    static const block_signals blocks[VODR_BLOCK_COUNT + 1] = {
         {"volume_divider", volume_divider, COUNT(volume_divider)},
         {"slice_generator", slice_generator, COUNT(slice_generator)},
         {"rasterizer", rasterizer, COUNT(rasterizer)},
@@ -180,6 +247,7 @@ const block_signals *signals_of(vodr_block block)
         {"alpha_blender", alpha_blender, COUNT(alpha_blender)},
         {"pixel_cache", pixel_cache, COUNT(pixel_cache)},
         {"frame_buffer", frame_buffer, COUNT(frame_buffer)},
+        {"vodr_top", vodr_top, COUNT(vodr_top)},
     };
     return &blocks[block];
 }
@@ -192,6 +260,16 @@ int32_t signal_width(const signal_field *field, const vodr_machine *machine)
     case WIDTH_BEAT: return 8 * machine->mem_bus_bytes;
     default: return field->width_bits;
     }
+}
+
+size_t signal_bytes(const signal_field *field, const vodr_machine *machine, const void *record)
+{
+    int32_t bytes = (signal_width(field, machine) + 7) / 8, length;
+    if (field->length != SIGNAL_WHOLE) {
+        memcpy(&length, (const char *)record + field->length, sizeof length);
+        bytes = length < bytes ? length : bytes;
+    }
+    return (size_t)(bytes < field->bytes ? bytes : field->bytes);
 }
 
 const void *signal_record(const signal_port *port, const void *in, const void *out)

@@ -34,11 +34,20 @@ typedef struct block_signals {
     int32_t count;
 } block_signals;
 
-/* Of a vodr_block. */
+/* vodr_top: its outputs are records of block_outs, in the order of blocks. */
+#define RTL_TOP ((vodr_block)VODR_BLOCK_COUNT)
+
+/* Of a vodr_block, or RTL_TOP. */
 const block_signals *signals_of(vodr_block block);
+
+/* Where a block's record begins among all; of RTL_TOP, where the last one ends. */
+int32_t rtl_top_record(vodr_block block);
 
 /* A field's width in a machine, bits. */
 int32_t signal_width(const signal_field *field, const vodr_machine *machine);
+
+/* Bytes of a field that mean anything in a record. */
+size_t signal_bytes(const signal_field *field, const vodr_machine *machine, const void *record);
 
 /* A port's record in a block's `in` or `out`. */
 const void *signal_record(const signal_port *port, const void *in, const void *out);

@@ -34,15 +34,15 @@ static bool save(const char *path, const char *stem, const waveform *w, const di
     return fclose(file) == 0;
 }
 
-rtl_status waveform_open(waveform *w, const char *stem, lockstep *l, const difference *d, uint64_t cycle,
+rtl_status waveform_open(waveform *w, const char *stem, rtl_block *block, const difference *d, uint64_t cycle,
                          vodr_error *error)
 {
     char path[4096];
-    *w = (waveform){.block = &l->rtl,
+    *w = (waveform){.block = block,
                     .first_cycle = cycle > WAVEFORM_BEFORE_CYCLES ? cycle - WAVEFORM_BEFORE_CYCLES : 0,
                     .end_cycle = cycle + 1 + WAVEFORM_AFTER_CYCLES};
     snprintf(path, sizeof path, "%s.fst", stem);
-    if (!l->rtl.library.model.trace(l->rtl.library.model.state, path))
+    if (!block->library.model.trace(block->library.model.state, path))
         return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be written", path);
     snprintf(path, sizeof path, "%s.gtkw", stem);
     if (!save(path, stem, w, d, cycle))

@@ -14,7 +14,7 @@ typedef struct waveform {
 
 /* Of a block whose library has waveforms, before its machine's first cycle: STEM.fst and STEM.gtkw. A cycle is two
  * units of time, the clock up in the first. */
-rtl_status waveform_open(waveform *w, const char *stem, lockstep *l, const difference *d, uint64_t cycle,
+rtl_status waveform_open(waveform *w, const char *stem, rtl_block *block, const difference *d, uint64_t cycle,
                          vodr_error *error);
 
 /* Before each cycle. */

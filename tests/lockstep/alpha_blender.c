@@ -1,0 +1,75 @@
+/* alpha_blender.c - traffic for the alpha blender: a texture unit that offers fragments, a pixel cache that lets them
+ * go and reads their pixels when it likes. */
+#include "bench.h"
+#include "pixel_word.h"
+
+static const char *const machines[] = {"", "fb_bits=16 tf_bits=16", "blend_cycles=3",
+                                       "nonblocking=1 nonblocking_fifo=5 blend_cycles=9", NULL};
+
+static void draw(rng *random, vodr_machine *m)
+{
+    m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
+}
+
+/* A premultiplied colour, or in mip a density. */
+static uint64_t word(bench *b, bool written)
+{
+    int32_t bits = b->machine.fb_bits;
+    vodr_rgba p = {.a = (uint16_t)bench_bits(&b->random, bits)};
+    if (b->machine.blend == VODR_BLEND_MIP)
+        return written ? bench_bits(&b->random, b->machine.density_bits) | PIXEL_WORD_WRITTEN : 0;
+    p.r = (uint16_t)rng_int(&b->random, 0, p.a);
+    p.g = rng_one_in(&b->random, 4) ? p.a : (uint16_t)rng_int(&b->random, 0, p.a);
+    p.b = rng_one_in(&b->random, 4) ? 0 : (uint16_t)rng_int(&b->random, 0, p.a);
+    return pixel_word(&b->machine, p);
+}
+
+/* The pixel cache's side: the fragment before it, and how many that are gone wait for their pixel. */
+typedef struct cache_side {
+    bool holds, dead;
+    int64_t unread, room;
+    door_port door;
+    pixel_port pixel;
+} cache_side;
+
+/* What the cache registers for the next cycle, in which `unread` still counts what is read in it. */
+static void decide(bench *b, cache_side *c, int64_t haste)
+{
+    c->pixel.valid = c->unread > 0 && !rng_one_in(&b->random, haste);
+    c->pixel.pixel = word(b, rng_one_in(&b->random, 2));
+    c->door.gone = c->holds && !rng_one_in(&b->random, haste) && (c->dead || c->unread - c->pixel.valid < c->room);
+    c->door.hazard = c->holds && !c->door.gone && rng_one_in(&b->random, 2);
+    c->door.ready = !c->holds || c->door.gone;
+}
+
+static void traffic(bench *b, uint64_t transactions)
+{
+    alpha_blender_face *face = &b->faces->alpha_blender;
+    alpha_blender_out out = b->reset->alpha_blender;
+    colour_port colour = {.valid = false};
+    cache_side cache = {.room = b->machine.nonblocking ? b->machine.nonblocking_fifo : 1, .door.ready = true};
+    const alpha_blender_in in = {.colour = &colour, .door = &cache.door, .pixel = &cache.pixel};
+    int64_t haste = 2;
+    for (uint64_t done = 0; done < transactions && !bench_differs(b); b->cycles++) {
+        face->clock(face->state, &in, &out);
+        if (rng_one_in(&b->random, 100))
+            haste = rng_int(&b->random, 2, 20);
+        cache.unread -= cache.pixel.valid;
+        if (cache.door.gone) {
+            cache.unread += !cache.dead;
+            cache.holds = false;
+        }
+        if (colour.valid && cache.door.ready) {
+            cache.holds = true;
+            cache.dead = colour.dead;
+            colour.valid = false;
+            done++;
+        }
+        if (!colour.valid)
+            colour = (colour_port){
+                .valid = !rng_one_in(&b->random, haste), .dead = rng_one_in(&b->random, 5), .colour = word(b, true)};
+        decide(b, &cache, haste);
+    }
+}
+
+const block_bench bench_alpha_blender = {VODR_BLOCK_ALPHA_BLENDER, machines, draw, traffic};

@@ -1,0 +1,44 @@
+/* volume_divider.c - traffic for the volume divider: nothing goes in but the slice generator's answer. What comes out
+ * follows from view and machine, so an episode is a frame, and a transaction a visit or the frame's end. */
+#include "bench.h"
+
+/* Bricks of 5 voxels and more: volumes have 4096 of them at most, which is as many as a library knows to leave out. */
+static const char *const machines[] = {"traversal=whole",
+                                       "traversal=layer",
+                                       "traversal=column texture_memory_bytes=1048576",
+                                       "traversal=tile texture_memory_bytes=1048576",
+                                       "traversal=tile skip_empty=1 texture_memory_bytes=1048576",
+                                       NULL};
+
+static void draw(rng *random, vodr_machine *m)
+{
+    m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
+    if (m->skip_empty)
+        m->traversal = (int32_t)rng_int(random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_TILE);
+    m->brick = (int32_t)rng_int(random, 5, rng_one_in(random, 3) ? 60 : 16);
+    m->brick_setup_cycles = (int32_t)rng_int(random, 29, rng_one_in(random, 4) ? 70 : 34);
+    m->cache_bytes = 256 << rng_int(random, 0, 6);
+}
+
+static void traffic(bench *b, uint64_t transactions)
+{
+    volume_divider_face *face = &b->faces->volume_divider;
+    volume_divider_out out = b->reset->volume_divider;
+    ready_port ready = {false};
+    const volume_divider_in in = {.brick = &ready};
+    int64_t haste = 1;
+    int32_t idle_cycles = 0;
+    uint64_t done = 0;
+    for (; done < transactions && idle_cycles < 5 && !bench_differs(b); b->cycles++) {
+        if (rng_one_in(&b->random, 300))
+            haste = rng_one_in(&b->random, 3) ? rng_int(&b->random, 2, 400) : 1;
+        ready.ready = rng_one_in(&b->random, haste);
+        done += out.brick.valid && ready.ready;
+        face->clock(face->state, &in, &out);
+        idle_cycles += out.report.idle;
+    }
+    done += idle_cycles > 0;
+    b->left = done < transactions ? transactions - done : 0;
+}
+
+const block_bench bench_volume_divider = {VODR_BLOCK_VOLUME_DIVIDER, machines, draw, traffic};
