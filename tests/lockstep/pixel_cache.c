@@ -16,7 +16,7 @@ static const char *const machines[] = {
     "ways=1 line_px=4x4 cache_bytes=64 nonblocking=1 nonblocking_fifo=1 nonblocking_misses=1 write_fifo=1",
     NULL};
 
-enum { BLENDING = 256, WAITING = 512, THRASHING = 24, BLOCKS_BEFORE = 4 };
+enum { BLENDING = 256, THRASHING = 24, BLOCKS_BEFORE = 4, LONGEST_FRAME = 1500 };
 
 static void draw(rng *random, vodr_machine *m)
 {
@@ -179,7 +179,8 @@ static void traffic(bench *b, uint64_t transactions)
 {
     pixel_cache_face *face = &b->faces->pixel_cache;
     pixel_cache_out out = b->reset->pixel_cache;
-    texture_side texture = {.left = (uint64_t)rng_int(&b->random, 1, (int64_t)transactions)};
+    uint64_t most = transactions < LONGEST_FRAME ? transactions : LONGEST_FRAME;
+    texture_side texture = {.left = (uint64_t)rng_int(&b->random, 1, (int64_t)most)};
     blend_side blender = {.port = {.valid = false}};
     memory_side memory = {0};
     report_port before[BLOCKS_BEFORE] = {{0}};
