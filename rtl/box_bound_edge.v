@@ -23,7 +23,7 @@ module box_bound_edge #(
     input signed      [52:0] sum,
     input              [4:0] fraction,
     input signed      [52:0] near,
-    input             [51:0] far, // positive where near is
+    input             [50:0] far, // positive where near is
     input             [14:0] centre,
     input             [14:0] from, to,
     output reg        [14:0] edge_px
@@ -46,15 +46,18 @@ module box_bound_edge #(
     reg  [51:0] rest;     // what is left of the numerator's bits up to the quotient's bit at hand
     reg  [14:0] tail;     // those below
     reg  [15:0] quotient; // 2^15 and more is beyond any frame
-    wire [51:0] divisor = minus == (END != 0) ? far : near[51:0];
-    wire        fits    = divide && rest >= divisor;
+    wire [50:0] divisor = minus == (END != 0) ? far : near[50:0];
+    wire        fits    = divide && rest >= {1'b0, divisor};
+    wire [50:0] left    = rest[50:0] - (fits ? divisor : 51'd0);
 
     always @(posedge clk)
         if (take && perspective) begin
             minus <= n[52];
-            {rest, tail} <= {15'd0, n[51:0] ^ {52{n[52]}}};
+            rest <= {15'd0, n[51:15] ^ {37{n[52]}}};
+            tail <= n[14:0] ^ {15{n[52]}};
         end else if (divide) begin
-            {rest, tail} <= {fits ? rest - divisor : rest, tail} << 1;
+            rest <= {left, tail[14]};
+            tail <= {tail[13:0], 1'b0};
             quotient <= {quotient[14:0], fits};
         end
 
