@@ -188,7 +188,7 @@ $(BUILD)/librtl.a: $(RTL)
 
 # Where co-simulation finds what it builds libraries of, and keeps them.
 WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
-$(BUILD)/host/cosim_options.o: STRICT += $(WHERE)
+$(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@

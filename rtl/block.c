@@ -21,22 +21,54 @@ static int32_t port_bytes(int32_t width_bits)
                               : 4 * ((width_bits + 31) / 32);
 }
 
+/* Numbers of 1, 2, 4 or 8 bytes, wherever they lie. These run for every port in every cycle. */
+static inline uint64_t load(const void *from, int32_t bytes)
+{
+    uint8_t one;
+    uint16_t two;
+    uint32_t four;
+    uint64_t eight;
+    switch (bytes) {
+    case 1: memcpy(&one, from, 1); return one;
+    case 2: memcpy(&two, from, 2); return two;
+    case 4: memcpy(&four, from, 4); return four;
+    default: memcpy(&eight, from, 8); return eight;
+    }
+}
+
+static inline void store(void *to, int32_t bytes, uint64_t value)
+{
+    const uint8_t one = (uint8_t)value;
+    const uint16_t two = (uint16_t)value;
+    const uint32_t four = (uint32_t)value;
+    switch (bytes) {
+    case 1: memcpy(to, &one, 1); break;
+    case 2: memcpy(to, &two, 2); break;
+    case 4: memcpy(to, &four, 4); break;
+    default: memcpy(to, &value, 8);
+    }
+}
+
 static void put(void *data, int32_t width_bits, uint64_t value)
 {
     if (width_bits < 64)
         value &= ((uint64_t)1 << width_bits) - 1;
-    memcpy(data, &value, (size_t)port_bytes(width_bits)); /* the lowest byte comes first */
+    store(data, port_bytes(width_bits), value);
 }
 
 static uint64_t get(const void *data, int32_t width_bits)
 {
-    uint64_t value = 0;
-    memcpy(&value, data, (size_t)port_bytes(width_bits));
-    return value;
+    return load(data, port_bytes(width_bits));
 }
 
-/* Bytes of a field that its port has. */
-static size_t field_bytes(const rtl_wire *w)
+/* Whether both sides of a wire are numbers; else bytes are copied, as many as the narrower has. */
+static inline bool is_number(const rtl_wire *w)
+{
+    int32_t bytes = w->field->bytes;
+    return w->width_bits <= 64 && (bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8);
+}
+
+static size_t common_bytes(const rtl_wire *w)
 {
     int32_t bytes = (w->width_bits + 7) / 8;
     return (size_t)(bytes < w->field->bytes ? bytes : w->field->bytes);
@@ -45,21 +77,19 @@ static size_t field_bytes(const rtl_wire *w)
 static void drive(const rtl_wire *w, const void *record)
 {
     const char *from = (const char *)record + w->field->offset;
-    uint64_t value = 0;
-    if (w->width_bits > 64) {
-        memcpy(w->data, from, field_bytes(w));
-        return;
-    }
-    memcpy(&value, from, field_bytes(w));
-    put(w->data, w->width_bits, value);
+    if (is_number(w))
+        put(w->data, w->width_bits, load(from, w->field->bytes));
+    else
+        memcpy(w->data, from, common_bytes(w));
 }
 
 void rtl_wire_sample(const rtl_wire *w, void *record)
 {
     char *to = (char *)record + w->field->offset;
-    if (w->field->bytes <= (int16_t)sizeof(uint64_t))
-        memset(to, 0, (size_t)w->field->bytes);
-    memcpy(to, w->data, field_bytes(w));
+    if (is_number(w))
+        store(to, w->field->bytes, get(w->data, w->width_bits));
+    else
+        memcpy(to, w->data, common_bytes(w));
 }
 
 /* ---- clock ---- */

@@ -76,7 +76,7 @@ static int add_parameters(char *text, const rtl_registers *registers, char **arg
     int64_t value;
     for (char *name; count + 1 < MAX_ARGUMENTS && (name = next_parameter(&text)) != NULL;) {
         char argument[128];
-        if (!rtl_parameter(registers, name, &value))
+        if (!registers || !rtl_parameter(registers, name, &value))
             continue;
         snprintf(argument, sizeof argument, "%s=%" PRId64, name, value);
         arguments[count] = strdup(argument);
@@ -212,20 +212,33 @@ static rtl_status load(const char *path, rtl_library *l, vodr_error *error)
     return RTL_OK;
 }
 
+static rtl_status open_module(const rtl_source *source, const char *module, const char *file,
+                              const rtl_registers *registers, rtl_library *l, vodr_error *error)
+{
+    char path[MAX_PATH];
+    *l = (rtl_library){0};
+    snprintf(l->file, sizeof l->file, "%s", source->file ? source->file : strrchr(file, '/') + 1);
+    rtl_status status = build(source, module, file, registers, path, sizeof path, error);
+    return status == RTL_OK ? load(path, l, error) : status;
+}
+
 rtl_status rtl_library_open(const rtl_source *source, vodr_block block, const rtl_registers *registers, rtl_library *l,
                             vodr_error *error)
 {
     const char *module = signals_of(block)->name;
-    char file[MAX_PATH], path[MAX_PATH];
-    *l = (rtl_library){0};
+    char file[MAX_PATH];
     snprintf(file, sizeof file, "%s/rtl/%s.v", source->root, module);
-    const char *from = source->file ? source->file : file;
-    snprintf(l->file, sizeof l->file, "%s", source->file ? source->file : strrchr(file, '/') + 1);
-    rtl_status status = build(source, module, from, registers, path, sizeof path, error);
-    if (status == RTL_OK)
-        status = load(path, l, error);
+    rtl_status status = open_module(source, module, source->file ? source->file : file, registers, l, error);
     if (status == RTL_OK)
         status = check_ports(l, block, registers, error);
+    if (status != RTL_OK)
+        rtl_library_close(l);
+    return status;
+}
+
+rtl_status rtl_module_open(const rtl_source *source, const char *module, rtl_library *l, vodr_error *error)
+{
+    rtl_status status = open_module(source, module, source->file, NULL, l, error);
     if (status != RTL_OK)
         rtl_library_close(l);
     return status;

@@ -31,6 +31,10 @@ typedef struct rtl_library {
 /* Builds the library of a block's module when it is not there, and makes a model of it. To be closed on success. */
 rtl_status rtl_library_open(const rtl_source *source, vodr_block block, const rtl_registers *registers, rtl_library *l,
                             vodr_error *error);
+
+/* The same of a module that is no block, in source->file: whatever ports it has, and its own defaults. */
+rtl_status rtl_module_open(const rtl_source *source, const char *module, rtl_library *l, vodr_error *error);
+
 void rtl_library_close(rtl_library *l);
 
 /* The model's port of this name; NULL when it has none. */

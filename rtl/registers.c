@@ -138,12 +138,11 @@ static int64_t power_of_two(int64_t least)
     return power;
 }
 
-static int64_t texture_bytes(const rtl_registers *r)
+/* Of one buffer, whole words. */
+static int64_t texture_bytes(const vodr_machine *m)
 {
-    const vodr_machine *m = &r->machine;
     int64_t bytes = m->traversal == VODR_TRAVERSAL_WHOLE ? 0 : m->texture_memory_bytes / (m->double_buffer ? 2 : 1);
-    int64_t burst = m->texture_burst_bytes > m->mem_bus_bytes ? m->texture_burst_bytes : m->mem_bus_bytes;
-    return (bytes + burst) / burst * burst;
+    return power_of_two(bytes > m->mem_bus_bytes ? bytes : m->mem_bus_bytes);
 }
 
 /* Memories whose size a frame decides come in few sizes, so that few libraries are needed. */
@@ -162,7 +161,7 @@ bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
         {"LINE_H", m->line_px.height},
         {"LINE_BYTES", line_bytes(m)},
         {"BEAT_BYTES", beat},
-        {"TEXTURE_BYTES", texture_bytes(r)},
+        {"TEXTURE_BYTES", texture_bytes(m)},
         {"FRAGMENT_ROOM", m->fragment_fifo + (m->traversal == VODR_TRAVERSAL_WHOLE ? m->mem_latency_cycles : 0)},
         {"EMPTY_BRICKS", m->skip_empty ? power_of_two(bricks > LEAST_BITS ? bricks : LEAST_BITS) : 1},
         {"FRAME_LINES",

@@ -2,7 +2,7 @@
 // of volume_divider.
 //
 //   begins            the candidate is known: the box lo_*, hi_*, its bound x0 .. k1
-//   shift_in          twice then: slices move up, and the first is at hand in the next cycle
+//   shift_in          up for two cycles then: slices move up, and the first is at hand
 //   probing           a row is looked at
 //   found, exhausted  it has a fragment; it has none, and no row is left
 //   under             the nearest slice comes first

@@ -10,11 +10,10 @@ localparam VALUE_BITS = DENSITY_BITS + GUARD_BITS; // a density with its guard b
 function [VALUE_BITS-1:0] lerp;
     input [VALUE_BITS-1:0] a, b;
     input [WEIGHT_BITS-1:0] weight;
-    reg signed [VALUE_BITS+WEIGHT_BITS:0] difference, factor, product;
+    reg [VALUE_BITS+WEIGHT_BITS:0] difference, product; // two's complement, with room for the product
     begin
-        difference = $signed({{(WEIGHT_BITS + 1){1'b0}}, b}) - $signed({{(WEIGHT_BITS + 1){1'b0}}, a});
-        factor = $signed({{(VALUE_BITS + 1){1'b0}}, weight});
-        product = difference * factor;
+        difference = {{(WEIGHT_BITS + 1){1'b0}}, b} - {{(WEIGHT_BITS + 1){1'b0}}, a};
+        product = difference * {{(VALUE_BITS + 1){1'b0}}, weight};
         lerp = a + product[WEIGHT_BITS +: VALUE_BITS];
     end
 endfunction

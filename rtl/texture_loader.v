@@ -104,7 +104,9 @@ module texture_loader #(
 
     reg [3:0]   load_visit [0:7];
     reg         load_buffer [0:7];
-    reg [143:0] load_brick [0:7]; // number, hi, lo
+    reg [47:0]  load_number [0:7];
+    reg [47:0]  load_lo [0:7];
+    reg [47:0]  load_hi [0:7];
     reg [3:0]   loads_known, loads_asked, loads_loaded; // that came; granted in full; with all data
 
     wire       finished;                              // a brick's last data
@@ -125,29 +127,33 @@ module texture_loader #(
         loads_loaded <= rst ? 4'd0 : loads_loaded_next;
     end
 
-    wire [143:0] new_brick = {brick_number, brick_hi_z, brick_hi_y, brick_hi_x, brick_lo_z, brick_lo_y, brick_lo_x};
+    wire [47:0] new_lo = {brick_lo_z, brick_lo_y, brick_lo_x};
+    wire [47:0] new_hi = {brick_hi_z, brick_hi_y, brick_hi_x};
 
     always @(posedge clk)
         if (to_load) begin
             load_visit[loads_known[2:0]]  <= known;
             load_buffer[loads_known[2:0]] <= new_buffer;
-            load_brick[loads_known[2:0]]  <= new_brick;
+            load_number[loads_known[2:0]] <= brick_number;
+            load_lo[loads_known[2:0]]     <= new_lo;
+            load_hi[loads_known[2:0]]     <= new_hi;
         end
 
     // ---- request: of the first load that was not asked for, once its buffer's visits are drawn ----
 
     reg          under_way; // asked for, and not granted in full
-    wire         now_comes  = loads_asked_next == loads_known;
-    wire [3:0]   ask_visit  = now_comes ? known : load_visit[loads_asked_next[2:0]];
-    wire         ask_buffer = now_comes ? new_buffer : load_buffer[loads_asked_next[2:0]];
-    wire [143:0] ask_brick  = now_comes ? new_brick : load_brick[loads_asked_next[2:0]];
-    wire [3:0]   ahead      = ask_visit - drawn_next;
-    wire         ask        = loads_asked_next != loads_known_next && !(under_way && !load_granted)
-                              && ahead < (double_buffer ? 4'd2 : 4'd1);
+    wire        now_comes  = loads_asked_next == loads_known;
+    wire [3:0]  ask_visit  = now_comes ? known : load_visit[loads_asked_next[2:0]];
+    wire        ask_buffer = now_comes ? new_buffer : load_buffer[loads_asked_next[2:0]];
+    wire [47:0] ask_number = now_comes ? brick_number : load_number[loads_asked_next[2:0]];
+    wire [47:0] ask_lo     = now_comes ? new_lo : load_lo[loads_asked_next[2:0]];
+    wire [47:0] ask_hi     = now_comes ? new_hi : load_hi[loads_asked_next[2:0]];
+    wire [3:0]  ahead      = ask_visit - drawn_next;
+    wire        ask        = loads_asked_next != loads_known_next && !(under_way && !load_granted)
+                             && ahead < (double_buffer ? 4'd2 : 4'd1);
 
-    reg [47:0]  ask_number;
-    reg [15:0]  lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; // the voxels that lie in memory for it
-    reg [31:0]  ask_row, ask_plane, ask_bytes; // bytes
+    reg [15:0] lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; // the voxels that lie in memory for it
+    reg [31:0] ask_row, ask_plane, ask_bytes;      // bytes
 
     function [15:0] grown_down;
         input [15:0] lo;
@@ -160,16 +166,18 @@ module texture_loader #(
     endfunction
 
     always @* begin
-        {ask_number, hi_z, hi_y, hi_x, lo_z, lo_y, lo_x} = 144'd0;
-        {ask_row, ask_plane, ask_bytes} = 96'd0;
+        {lo_z, lo_y, lo_x} = 48'd0;
+        {hi_z, hi_y, hi_x} = 48'd0;
+        ask_row = 32'd0;
+        ask_plane = 32'd0;
+        ask_bytes = 32'd0;
         if (ask) begin
-            {ask_number, hi_z, hi_y, hi_x, lo_z, lo_y, lo_x} = ask_brick;
-            lo_x = grown_down(lo_x);
-            lo_y = grown_down(lo_y);
-            lo_z = grown_down(lo_z);
-            hi_x = grown_up(hi_x, dim_x);
-            hi_y = grown_up(hi_y, dim_y);
-            hi_z = grown_up(hi_z, dim_z);
+            lo_x = grown_down(ask_lo[15:0]);
+            lo_y = grown_down(ask_lo[31:16]);
+            lo_z = grown_down(ask_lo[47:32]);
+            hi_x = grown_up(ask_hi[15:0], dim_x);
+            hi_y = grown_up(ask_hi[31:16], dim_y);
+            hi_z = grown_up(ask_hi[47:32], dim_z);
             ask_row = {16'd0, hi_x - lo_x} * DENSITY_BYTES;
             ask_plane = ask_row * {16'd0, hi_y - lo_y};
             ask_bytes = ask_plane * {16'd0, hi_z - lo_z};

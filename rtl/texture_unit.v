@@ -151,35 +151,36 @@ module texture_unit #(
 
     reg [Q_BITS-1:0] q_x, q_y, q_z; // of their fractions the first WEIGHT_BITS count
     // verilator lint_on UNUSEDSIGNAL
-    reg [15:0]       lo_x, lo_y, lo_z;
-    reg              two_x, two_y, two_z;
-    reg [31:0]       first, step_x, step_y, step_z; // of a brick's bytes: the first voxel; to its neighbours
 
     always @* begin
-        {q_x, q_y, q_z} = {(3 * Q_BITS){1'b0}};
-        {lo_x, lo_y, lo_z, two_x, two_y, two_z} = 51'd0;
+        q_x = {Q_BITS{1'b0}};
+        q_y = {Q_BITS{1'b0}};
+        q_z = {Q_BITS{1'b0}};
         if (accept) begin
             q_x = place_of(fragment_a_x, base_x[Q_BITS-1:0]);
             q_y = place_of(fragment_a_y, base_y[Q_BITS-1:0]);
             q_z = place_of(fragment_a_z, base_z[Q_BITS-1:0]);
-            lo_x = first_of(q_x[FRACTION_BITS +: 16]);
-            lo_y = first_of(q_y[FRACTION_BITS +: 16]);
-            lo_z = first_of(q_z[FRACTION_BITS +: 16]);
-            two_x = two_of(q_x[FRACTION_BITS +: 16], dim_x);
-            two_y = two_of(q_y[FRACTION_BITS +: 16], dim_y);
-            two_z = two_of(q_z[FRACTION_BITS +: 16], dim_z);
         end
     end
 
+    wire [15:0] lo_x  = first_of(q_x[FRACTION_BITS +: 16]);
+    wire [15:0] lo_y  = first_of(q_y[FRACTION_BITS +: 16]);
+    wire [15:0] lo_z  = first_of(q_z[FRACTION_BITS +: 16]);
+    wire        two_x = two_of(q_x[FRACTION_BITS +: 16], dim_x);
+    wire        two_y = two_of(q_y[FRACTION_BITS +: 16], dim_y);
+    wire        two_z = two_of(q_z[FRACTION_BITS +: 16], dim_z);
+
+    // In texture memory, bytes of the brick: its first voxel's place, and how far on its neighbours are.
+    wire [31:0] step_x = two_x ? DENSITY_BYTES : 32'd0;
+    wire [31:0] step_y = two_y ? row_bytes : 32'd0;
+    wire [31:0] step_z = two_z ? plane_bytes : 32'd0;
+    reg  [31:0] first;
+
     always @* begin
-        {first, step_x, step_y, step_z} = 128'd0;
-        if (accept && !whole) begin
+        first = 32'd0;
+        if (accept && !whole)
             first = {16'd0, lo_z - origin_z} * plane_bytes + {16'd0, lo_y - origin_y} * row_bytes
                   + {16'd0, lo_x - origin_x} * DENSITY_BYTES;
-            step_x = two_x ? DENSITY_BYTES : 0;
-            step_y = two_y ? row_bytes : 32'd0;
-            step_z = two_z ? plane_bytes : 32'd0;
-        end
     end
 
     always @(posedge clk) fetch_valid <= accept && whole && !rst;
@@ -198,7 +199,6 @@ module texture_unit #(
 
     reg [8*WORD_BYTES-1:0]    memory [0:(2 << BUFFER_BITS)-1];
     reg                       read;        // eight voxels of a fragment that was accepted in the cycle before
-    reg                       read_buffer;
     wire                      filtering = whole ? voxels_valid : read;
     wire [8*DENSITY_BITS-1:0] voxels;      // of the fragment that is filtered, x fastest
 
@@ -207,23 +207,41 @@ module texture_unit #(
 
     always @(posedge clk) read <= accept && !whole && !rst;
 
-    always @(posedge clk)
-        if (accept) read_buffer <= buffer;
+    // Of a byte of a buffer: the word that has it, and where it begins there.
+    // verilator lint_off UNUSEDSIGNAL
+    function [BUFFER_BITS-1:0] word_of;
+        input [31:0] at;
+        reg [34:0]   at_bit;
+        begin
+            at_bit = {at, 3'b000};
+            word_of = at_bit[LANE_BITS +: BUFFER_BITS];
+        end
+    endfunction
+
+    function [LANE_BITS-1:0] lane_of;
+        input [31:0] at;
+        reg [34:0]   at_bit;
+        begin
+            at_bit = {at, 3'b000};
+            lane_of = at_bit[LANE_BITS-1:0];
+        end
+    endfunction
+    // verilator lint_on UNUSEDSIGNAL
 
     genvar i;
     generate
         for (i = 0; i < 8; i = i + 1) begin : corner
-            // verilator lint_off UNUSEDSIGNAL
-            reg [31:0]  at; // bytes from the brick's first on: at most those of a buffer
-            wire [34:0] at_bit = {at, 3'b000};
-            // verilator lint_on UNUSEDSIGNAL
+            localparam [31:0] X = i & 1, Y = i >> 1 & 1, Z = i >> 2;
+            reg [8*WORD_BYTES-1:0] word;
+            reg [LANE_BITS-1:0]    lane;
             always @(posedge clk)
-                if (accept)
-                    at <= first + ((i & 1) != 0 ? step_x : 0) + ((i & 2) != 0 ? step_y : 0) + ((i & 4) != 0 ? step_z : 0);
+                if (accept && !whole) begin
+                    word <= memory[{buffer, word_of(first + step_x * X + step_y * Y + step_z * Z)}];
+                    lane <= lane_of(first + step_x * X + step_y * Y + step_z * Z);
+                end
             assign voxels[i*DENSITY_BITS +: DENSITY_BITS] =
-                whole ? voxels_density[16*i +: DENSITY_BITS] :
-                read  ? memory[{read_buffer, at_bit[LANE_BITS +: BUFFER_BITS]}][at_bit[LANE_BITS-1:0] +: DENSITY_BITS]
-                      : {DENSITY_BITS{1'b0}};
+                !filtering ? {DENSITY_BITS{1'b0}} :
+                read       ? word[lane +: DENSITY_BITS] : voxels_density[16*i +: DENSITY_BITS];
         end
     endgenerate
 

@@ -30,6 +30,8 @@ typedef struct block_bench {
     const char *const *machines;
     /* Draws what it has as registers. NULL: nothing. */
     void (*draw)(rng *random, vodr_machine *machine);
+    /* Draws another view than case_make() did. NULL: none. */
+    void (*look)(rng *random, test_case *scene);
     /* Clocks the block until that many transactions are done, or bench_differs(). */
     void (*traffic)(bench *b, uint64_t transactions);
 } block_bench;
@@ -44,5 +46,8 @@ uint64_t bench_bits(rng *random, int32_t bits);
 
 extern const block_bench bench_volume_divider, bench_slice_generator, bench_rasterizer, bench_texture_unit,
     bench_alpha_blender, bench_pixel_cache, bench_frame_buffer;
+
+/* Tests of arithmetic, on all operands. */
+void lockstep_lerp(void **state);
 
 #endif

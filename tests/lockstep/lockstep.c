@@ -1,6 +1,7 @@
 /* lockstep.c - runs the lock-step benches.
  *   lockstep [--transactions N] [--seed S] [BLOCK]...    20,000 transactions a machine of every block, from seed 1
- * A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
+ *   lockstep lerp                                        arithmetic alone, of all operands; without a name it is run
+ * too A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,8 +16,12 @@
 enum { EPISODE_TRANSACTIONS = 5000 };
 
 static const block_bench *const benches[] = {&bench_volume_divider, &bench_slice_generator, &bench_rasterizer,
-                                             &bench_alpha_blender, &bench_frame_buffer};
+                                             &bench_texture_unit,   &bench_alpha_blender,   &bench_pixel_cache,
+                                             &bench_frame_buffer};
 
+static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp}};
+
+enum { EXHAUSTIVE = sizeof exhaustive / sizeof *exhaustive };
 enum { BENCHES = sizeof benches / sizeof *benches };
 
 static uint64_t transactions = 20000, first_seed = 1;
@@ -59,6 +64,9 @@ static void begin(const block_bench *what, const char *settings, uint64_t seed, 
     set_machine(settings, &b->machine);
     if (what->draw) {
         what->draw(&b->random, &b->machine);
+    }
+    if (what->look) {
+        what->look(&b->random, &b->scene);
     }
     b->scene.table.count = (size_t)1 << b->machine.density_bits;
     b->scene.entries = realloc(b->scene.entries, b->scene.table.count * sizeof *b->scene.entries);
@@ -137,7 +145,7 @@ static bool named(const char *name, int argc, char **argv, int first)
 
 int main(int argc, char **argv)
 {
-    struct CMUnitTest tests[BENCHES];
+    struct CMUnitTest tests[BENCHES + EXHAUSTIVE];
     size_t count = 0;
     int first = 1;
     for (; first + 1 < argc && strncmp(argv[first], "--", 2) == 0; first += 2) {
@@ -155,6 +163,11 @@ int main(int argc, char **argv)
         if (named(name, argc, argv, first)) {
             tests[count++] =
                 (struct CMUnitTest){.name = name, .test_func = test_block, .initial_state = (void *)benches[i]};
+        }
+    }
+    for (size_t i = 0; i < EXHAUSTIVE; i++) {
+        if (named(exhaustive[i].name, argc, argv, first)) {
+            tests[count++] = exhaustive[i];
         }
     }
     if (!count) {
