@@ -61,11 +61,11 @@ fault() {
 fault alpha_blender alpha_blender.v 's/<< (FB_BITS - 1)/<< (FB_BITS - 2)/'
 fault pixel_cache cache_tags.v 's/ages\[w\*WAY_BITS +: WAY_BITS\] == LAST/ages[w*WAY_BITS +: WAY_BITS] + 1 == LAST/'
 fault pixel_cache pixel_cache.v "s/dirty\[known_at\] <= 1'b1/dirty[known_at] <= 1'b0/"
-fault pixel_cache cache_blends.v 's/pixels\[i\] == asked/pixels[i] == ~asked/'
+fault pixel_cache cache_blends.v 's/pixels\[i\] == asked/pixels[i] == ~asked/' --set blend_cycles=24
 fault volume_divider volume_divider.v "s/then_x = brick_index(turn_of(2'd0/then_x = brick_index(turn_of(2'd1/"
 if [ "$long" ]; then
     fault texture_unit texture_filter.vh 's/<< GUARD_BITS >> 1/<< GUARD_BITS >> 2/'
-    fault rasterizer slice_rows.vh "s/steps_past(least - at_0 - 64'sd1, growth)/steps_past(least - at_0, growth)/"
+    fault rasterizer slice_rows.vh "s/steps_past(limit - at_0 - 64'sd1, growth)/& + 15'd1/"
     fault slice_generator slice_plane.vh "s/border_of = (/border_of = 64'd1 + (/"
     fault frame_buffer frame_buffer.v \
         's/bus_free & fill_here;/bus_free \& fill_here \& ~write_here;/; s/bus_free & ~fill_here & write_here/bus_free \& write_here/'
@@ -86,7 +86,7 @@ brings 2 'mine.v: input coffee of module alpha_blender is neither a port of this
     's/input             rst,/input             rst, coffee,/'
 brings 2 'mine.v: register dim_x is 20, which the 3 bits of module alpha_blender cannot hold' \
     's/input             rst,/input             rst, input [2:0] dim_x,/'
-brings 2 'UNOPTFLAT' 's/wire waits = takes/wire waits = (waits \& rst) | takes/'
+brings 2 'Circular combinational logic' 's/wire waits = takes/wire waits = (waits \& rst) | takes/'
 brings 2 'alpha_blender' 's/^module alpha_blender/module beta_blender/'
 brings 2 'syntax error' 's/^module/modul/'
 bad 2 'none.v: cannot be read' draw --rtl alpha_blender=none.v
