@@ -407,6 +407,11 @@ module pixel_cache #(
             settled_pixel  <= done_pixel;
         end
 
+    // The fragment that is at the door in the next cycle.
+    wire                   next_alive = arrives ? ~colour_dead : door_valid & ~colour_gone & ~door_dead;
+    wire                   next_hit   = arrives ? arriving_hit : door_hit;
+    wire [NUMBER_BITS-1:0] next_line  = arrives ? arriving : door_line;
+
     cache_places #(
         .WRITE_FIFO(WRITE_FIFO), .NUMBER_BITS(NUMBER_BITS), .OWN(NONBLOCKING == 0)
     ) places (
@@ -419,7 +424,6 @@ module pixel_cache #(
     // ---- blends ----
 
     wire           [29:0] next_pixel = arrives ? {colour_y, colour_x} : door_pixel;
-    wire                  next_alive = arrives ? ~colour_dead : door_valid & ~colour_gone & ~door_dead;
 
     cache_blends #(
         .BLEND_CYCLES(BLEND_CYCLES), .PIXEL_BITS(30), .PLACE_BITS(PLACE_BITS), .NEXT(NONBLOCKING == 0)
@@ -434,8 +438,6 @@ module pixel_cache #(
     // ---- whether the fragment at the door goes in the next cycle ----
 
     wire                   next_valid = arrives | (door_valid & ~colour_gone);
-    wire                   next_hit   = arrives ? arriving_hit : door_hit;
-    wire [NUMBER_BITS-1:0] next_line  = arrives ? arriving : door_line;
     reg                    blocked;
     integer m;
 
