@@ -145,7 +145,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
