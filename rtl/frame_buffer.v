@@ -179,7 +179,7 @@ module frame_buffer #(
     reg  [47:0] rows [0:63];    // the row that each bank has open: its first address;
     reg  [63:0] open;           // whether it has one
     reg  [19:0] since_refresh;  // cycles since one began, or since the start
-    reg         refreshed;      // one began since the last grant
+    reg         refreshed;      // one began: the first does so after dram_refresh_cycles
     wire        refresh_begins = dram_refresh_cycles != 0 && since_refresh == dram_refresh_cycles - 20'd1;
     reg   [5:0] bank;
     wire [47:0] row_there      = rows[bank];
@@ -219,7 +219,8 @@ module frame_buffer #(
         end
     end
 
-    // A refresh closes all rows; nobody looks at them until the next grant.
+    // A refresh closes all rows; nobody looks at them until the next grant. The first grant after one began waits for
+    // its end, so that no other meets it.
     always @(posedge clk)
         if (rst) begin
             since_refresh <= 20'd0;
@@ -230,10 +231,8 @@ module frame_buffer #(
             if (refresh_begins) begin
                 refreshed <= 1'b1;
                 open      <= 64'd0;
-            end else if (grant) begin
-                refreshed  <= 1'b0;
+            end else if (grant)
                 open[bank] <= 1'b1;
-            end
             if (grant)
                 rows[bank] <= row;
         end
