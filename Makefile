@@ -201,8 +201,8 @@ $(BUILD)/librtl.a: $(RTL)
 	@rm -f $@
 	ar rcs $@ $^
 
-# Where co-simulation finds what it builds libraries of, and keeps them.
-WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
+# Where co-simulation finds what it builds libraries of, and keeps them: builds of one tree share theirs.
+WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(if $(filter build/%,$(BUILD)),build,$(BUILD)))"'
 $(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)
