@@ -194,7 +194,8 @@ module volume_divider #(
     reg         empty_bricks [0:EMPTY_BRICKS-1];
 
     always @* begin
-        {then_x, then_y, then_z, then_number} = 96'd0;
+        {then_x, then_y, then_z} = 48'd0;
+        then_number = 48'd0;
         if (rst || moves) begin
             then_x = brick_index(turn_of(2'd0, nest_0, nest_1, turns), bricks_x, eye_x, under);
             then_y = brick_index(turn_of(2'd1, nest_0, nest_1, turns), bricks_y, eye_y, under);

@@ -13,7 +13,7 @@
 
 #include "bench.h"
 
-enum { EPISODE_TRANSACTIONS = 5000 };
+enum { EPISODE_TRANSACTIONS = 1000 };
 
 static const block_bench *const benches[] = {&bench_volume_divider, &bench_slice_generator, &bench_rasterizer,
                                              &bench_texture_unit,   &bench_alpha_blender,   &bench_pixel_cache,

@@ -206,4 +206,4 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_pixel_cache = {VODR_BLOCK_PIXEL_CACHE, machines, draw, traffic};
+const block_bench bench_pixel_cache = {VODR_BLOCK_PIXEL_CACHE, machines, draw, NULL, traffic};

@@ -34,8 +34,8 @@ static vodr_view plain_view(rng *random, const int32_t dims_vox[3])
     v.depth_step = -(rng_int(random, 0, 8) << 16);
     v.depth_first = (rng_int(random, 1, 60) << 16) - v.slices * v.depth_step;
     v.step_s[depth] = unit; /* 1/16 voxel a depth */
-    v.step_u[across] = unit >> rng_int(random, 3, 6);
-    v.step_v[down] = -unit >> rng_int(random, 3, 6);
+    v.step_u[across] = unit >> rng_int(random, 0, 4);
+    v.step_v[down] = -unit >> rng_int(random, 0, 4);
     v.step_s[across] = -(v.width_px / 2) * v.step_u[across];
     v.step_s[down] = -(v.height_px / 2) * v.step_v[down];
     for (int c = 0; c < 3; c++)
