@@ -147,8 +147,11 @@ static rtl_status build(const rtl_source *source, const char *module, const char
     for (int i = fixed; i < count; i++)
         free(arguments[i]);
     const char *last = last_line(said);
+    if (status == 0 && strlen(last) >= size)
+        return rtl_fail(error, RTL_ENVIRONMENT, "%s: the path of its library is longer than %zu bytes", module,
+                        size - 1);
     if (status == 0) {
-        snprintf(path, size, "%s", last);
+        memcpy(path, last, strlen(last) + 1);
         return RTL_OK;
     }
     if (status == 127)
