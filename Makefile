@@ -145,7 +145,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
@@ -201,8 +201,8 @@ $(BUILD)/librtl.a: $(RTL)
 	@rm -f $@
 	ar rcs $@ $^
 
-# Where co-simulation finds what it builds libraries of, and keeps them.
-WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
+# Where co-simulation finds what it builds libraries of, and keeps them: builds of one tree share theirs.
+WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(if $(filter build/%,$(BUILD)),build,$(BUILD)))"'
 $(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)

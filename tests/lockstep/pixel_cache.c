@@ -26,6 +26,17 @@ static void draw(rng *random, vodr_machine *m)
     m->write_policy = rng_one_in(random, 3) ? VODR_WRITE_POLICY_THROUGH : VODR_WRITE_POLICY_BACK;
 }
 
+/* Frames as long as they can be, so that numbers of lines have all their bits. */
+static void look(rng *random, test_case *scene)
+{
+    enum { SHORT_PX = 8 };
+    if (!rng_one_in(random, 4))
+        return;
+    bool wide = rng_one_in(random, 2);
+    scene->view.width_px = wide ? VODR_MAX_SIZE_PX : SHORT_PX;
+    scene->view.height_px = wide ? SHORT_PX : VODR_MAX_SIZE_PX;
+}
+
 /* ---- fragments: the texture unit's side ---- */
 
 typedef enum pattern { SAME_PIXEL, ROWS, THRASH, NEAR, ANYWHERE, PATTERNS } pattern;
@@ -206,4 +217,4 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_pixel_cache = {VODR_BLOCK_PIXEL_CACHE, machines, draw, NULL, traffic};
+const block_bench bench_pixel_cache = {VODR_BLOCK_PIXEL_CACHE, machines, draw, look, traffic};
