@@ -37,7 +37,7 @@ static void draw(rng *random, vodr_machine *m)
         m->dram_refresh_cycles = 0;
 }
 
-enum { TRANSACTIONS_A_MEMORY = 1000 };
+enum { TRANSACTIONS_A_MEMORY = 1000, WRAPS_BYTES = 256 };
 
 /* Both sides of the bus. */
 typedef struct sides {
@@ -94,7 +94,13 @@ static void ask_write(bench *b, sides *s)
         w->data[i] = (uint8_t)bench_bits(&b->random, 8);
 }
 
-/* A brick, or so much of it that bursts and beats end where they like. */
+static void forget_write(bench *b, sides *s)
+{
+    s->write.bytes = (int32_t)rng_int(&b->random, 0, s->line_bytes);
+    memset(s->write.data, (int)bench_bits(&b->random, 8), (size_t)s->line_bytes);
+}
+
+/* A brick, or so much of it that bursts and beats end where they like, or that a count of eight bits comes round. */
 static void ask_load(bench *b, sides *s)
 {
     int64_t brick = rng_int(&b->random, 0, s->bricks - 1), bytes = density_bytes(&b->machine), at = brick;
@@ -110,6 +116,8 @@ static void ask_load(bench *b, sides *s)
         bytes *= box.hi[c] - box.lo[c];
     s->load.address = s->setup->storage->texture_base + brick * s->setup->storage->brick_room_bytes;
     s->load.bytes = rng_one_in(&b->random, 3) ? bytes : rng_int(&b->random, 1, bytes < 700 ? bytes : 700);
+    if (bytes > WRAPS_BYTES && rng_one_in(&b->random, 4))
+        s->load.bytes = WRAPS_BYTES;
     s->loads[0] = s->loads[1];
     s->loads[1] = s->load.bytes;
     s->loading = true;
@@ -125,7 +133,7 @@ static void ask(bench *b, sides *s)
     if (s->write.valid)
         ask_write(b, s);
     else
-        memset(s->write.data, (int)bench_bits(&b->random, 8), (size_t)s->line_bytes);
+        forget_write(b, s);
     s->writes += s->write.valid;
     if (!s->load.valid && !s->loading && !s->loads[0] && rng_one_in(&b->random, s->likes_load)) {
         s->load.valid = true;
