@@ -1,7 +1,7 @@
 // box_bound.v - where a box of voxels can appear: a rectangle of pixels and a range of slices (docs/timing.md, section 2).
 // Part of volume_divider.
 //
-//   step          of the bounding: 1 to 8 the sums, 9 to 24 the quotients, 25 the edges; it is over in 26
+//   step          of the bounding: 1 to 8 the sums, 9 to 24 the quotients, 25 the edges; the bound stands from 26 on
 //   lo_*, hi_*    the box, half-open, voxels
 //   clip_*        pixels that there are
 //   bound_*       rows derived from the view, for x, y, z and k
