@@ -39,7 +39,7 @@ static void look(rng *random, test_case *scene)
 
 /* ---- fragments: the texture unit's side ---- */
 
-typedef enum pattern { SAME_PIXEL, ROWS, THRASH, NEAR, ANYWHERE, PATTERNS } pattern;
+typedef enum pattern { SAME_PIXEL, ROWS, THRASH, TWINS, NEAR, ANYWHERE, PATTERNS } pattern;
 
 typedef struct texture_side {
     colour_port port;
@@ -77,11 +77,24 @@ static void draw_pattern(bench *b, texture_side *t)
     int32_t most = t->pattern == SAME_PIXEL ? 1 : t->pattern == ANYWHERE ? VODR_MAX_SIZE_PX : 40;
     t->width = (int32_t)rng_int(&b->random, 1, most < view->width_px ? most : view->width_px);
     t->height = (int32_t)rng_int(&b->random, 1, most < view->height_px ? most : view->height_px);
-    t->x0 = t->port.x = (int32_t)rng_int(&b->random, 0, view->width_px - t->width);
-    t->y0 = t->port.y = (int32_t)rng_int(&b->random, 0, view->height_px - t->height);
+    bool corner = rng_one_in(&b->random, 4);
+    t->x0 = t->port.x = corner ? 0 : (int32_t)rng_int(&b->random, 0, view->width_px - t->width);
+    t->y0 = t->port.y = corner ? 0 : (int32_t)rng_int(&b->random, 0, view->height_px - t->height);
     t->dead_one_in = rng_one_in(&b->random, 3) ? 3 : 1000;
     if (t->pattern == THRASH)
         draw_thrash(b, t);
+}
+
+/* The pixel whose coordinates differ in one bit. */
+static void next_twin(bench *b, texture_side *t)
+{
+    int32_t bit = 1 << rng_int(&b->random, 0, 13);
+    bool across = rng_one_in(&b->random, 2);
+    int32_t x = across ? t->port.x ^ bit : t->port.x, y = across ? t->port.y : t->port.y ^ bit;
+    if (x >= b->scene.view.width_px || y >= b->scene.view.height_px)
+        return;
+    t->port.x = x;
+    t->port.y = y;
 }
 
 static void next_pixel(bench *b, texture_side *t)
@@ -99,6 +112,7 @@ static void next_pixel(bench *b, texture_side *t)
         t->port.x = t->x[i];
         t->port.y = t->y[i];
         break;
+    case TWINS: next_twin(b, t); break;
     default:
         t->port.x = t->x0 + (int32_t)rng_int(&b->random, 0, t->width - 1);
         t->port.y = t->y0 + (int32_t)rng_int(&b->random, 0, t->height - 1);
