@@ -1,0 +1,158 @@
+/* frame_buffer.c - traffic for the frame buffer: a pixel cache that wants lines and writes lines or pixels, a texture
+ * unit that wants bricks or parts of them; each as many at once as there can be, and where it likes. */
+#include "bench.h"
+#include "layout.h"
+#include "voxels.h"
+
+static const char *const machines[] = {"",
+                                       "line_px=4x4 mem_bus_bytes=4 nonblocking=1 nonblocking_misses=3 write_fifo=5",
+                                       "fb_bits=16 line_px=1x1 mem_bus_bytes=256 write_fifo=1",
+                                       "line_px=8x4 mem_bus_bytes=1 nonblocking=1 nonblocking_misses=1 write_fifo=16",
+                                       "line_px=2x1 mem_bus_bytes=16 nonblocking=1 nonblocking_misses=8",
+                                       NULL};
+
+static void draw(rng *random, vodr_machine *m)
+{
+    bool late = rng_one_in(random, 8);
+    m->write_policy = (int32_t)rng_int(random, VODR_WRITE_POLICY_BACK, VODR_WRITE_POLICY_THROUGH);
+    m->memory = (int32_t)rng_int(random, VODR_MEMORY_FIXED, VODR_MEMORY_DRAM);
+    m->mem_latency_cycles = rng_one_in(random, 3) ? 3 : (int32_t)rng_int(random, 3, late ? 1000 : 60);
+    m->texture_burst_bytes = 16 << rng_int(random, 0, 8);
+    m->dram_banks = 1 << rng_int(random, 0, 6);
+    m->dram_row_bytes = 64 << rng_int(random, 0, rng_one_in(random, 2) ? 10 : 2);
+    m->dram_trcd_cycles = (int32_t)rng_int(random, 1, late ? 255 : 12);
+    m->dram_tcas_cycles = rng_one_in(random, 3) ? 3 : (int32_t)rng_int(random, 3, late ? 255 : 12);
+    m->dram_trp_cycles = (int32_t)rng_int(random, 1, late ? 255 : 12);
+    m->dram_trfc_cycles = (int32_t)rng_int(random, 1, rng_one_in(random, 2) ? 3 : 60);
+    m->dram_refresh_cycles =
+        rng_one_in(random, 4) ? 0 : m->dram_trfc_cycles + (int32_t)rng_int(random, 1, rng_one_in(random, 2) ? 3 : 200);
+}
+
+enum { TRANSACTIONS_A_MEMORY = 2000 };
+
+/* Both sides of the bus. */
+typedef struct sides {
+    const block_setup *setup;
+    int32_t line_bytes, pixel_bytes;
+    int64_t lines, bricks;
+    bool through;
+    int64_t fills_room, fills, writes_room, writes; /* that can be under way, and that are */
+    fill_port fill;
+    write_port write;
+    load_port load;
+    int64_t loads[2]; /* bytes to come of the load before last, and of the last */
+    bool loading;     /* the last has bursts left */
+    int64_t likes_fill, likes_write, likes_load;
+} sides;
+
+static sides sides_of(const bench *b)
+{
+    const vodr_machine *m = &b->machine;
+    const block_setup *setup = clocked_setup(b->whole);
+    sides s = {.setup = setup, .line_bytes = line_bytes(m), .pixel_bytes = pixel_bytes(m), .bricks = 1};
+    s.lines = setup->storage->texture_base / s.line_bytes;
+    for (int c = 0; c < 3; c++)
+        s.bricks *= ceil_div32(setup->volume->dims_vox[c], setup->edge_vox[c]);
+    s.through = m->write_policy == VODR_WRITE_POLICY_THROUGH;
+    s.fills_room = m->nonblocking ? m->nonblocking_misses : 1;
+    s.writes_room = s.through ? m->write_fifo : 1;
+    return s;
+}
+
+/* How busy they are for a while. */
+static void like(bench *b, sides *s)
+{
+    int64_t *const likes[] = {&s->likes_fill, &s->likes_write, &s->likes_load};
+    for (int i = 0; i < 3; i++)
+        *likes[i] = rng_one_in(&b->random, 3) ? 1 : rng_int(&b->random, 2, rng_one_in(&b->random, 3) ? 300 : 20);
+}
+
+/* Few lines, so that they meet each other's rows and data, or any. */
+static int64_t any_line(bench *b, const sides *s)
+{
+    int64_t few = s->lines < 4 ? s->lines : 4;
+    return rng_int(&b->random, 0, (rng_one_in(&b->random, 2) ? few : s->lines) - 1) * s->line_bytes;
+}
+
+static void ask_write(bench *b, sides *s)
+{
+    write_port *w = &s->write;
+    w->bytes = s->through ? s->pixel_bytes : s->line_bytes;
+    w->address = any_line(b, s);
+    if (s->through)
+        w->address += rng_int(&b->random, 0, s->line_bytes / s->pixel_bytes - 1) * s->pixel_bytes;
+    for (int32_t i = 0; i < w->bytes; i++)
+        w->data[i] = (uint8_t)bench_bits(&b->random, 8);
+}
+
+/* A brick, or so much of it that bursts and beats end where they like. */
+static void ask_load(bench *b, sides *s)
+{
+    int64_t brick = rng_int(&b->random, 0, s->bricks - 1), bytes = density_bytes(&b->machine), at = brick;
+    vox_box box;
+    for (int c = 0; c < 3; c++) {
+        int32_t size = s->setup->volume->dims_vox[c], edge = s->setup->edge_vox[c], count = ceil_div32(size, edge);
+        box.lo[c] = (int32_t)(at % count) * edge;
+        box.hi[c] = edge < size - box.lo[c] ? box.lo[c] + edge : size;
+        at /= count;
+    }
+    box = voxels_reach(s->setup->volume->dims_vox, &box, filter_border_vox(&b->machine));
+    for (int c = 0; c < 3; c++)
+        bytes *= box.hi[c] - box.lo[c];
+    s->load.address = s->setup->storage->texture_base + brick * s->setup->storage->brick_room_bytes;
+    s->load.bytes = rng_one_in(&b->random, 3) ? bytes : rng_int(&b->random, 1, bytes < 700 ? bytes : 700);
+    s->loads[0] = s->loads[1];
+    s->loads[1] = s->load.bytes;
+    s->loading = true;
+}
+
+/* What they ask for in the next cycle. */
+static void ask(bench *b, sides *s)
+{
+    s->fill.valid = s->fills < s->fills_room && rng_one_in(&b->random, s->likes_fill);
+    if (s->fill.valid)
+        s->fill.address = any_line(b, s);
+    s->fills += s->fill.valid;
+    s->write.valid = s->writes < s->writes_room && rng_one_in(&b->random, s->likes_write);
+    if (s->write.valid)
+        ask_write(b, s);
+    s->writes += s->write.valid;
+    if (!s->load.valid && !s->loading && !s->loads[0] && rng_one_in(&b->random, s->likes_load)) {
+        s->load.valid = true;
+        ask_load(b, s);
+    }
+}
+
+/* What they see. */
+static void hear(sides *s, const frame_buffer_out *out)
+{
+    s->fills -= out->filled.valid;
+    s->writes -= out->written.valid;
+    s->loading &= !out->load.granted;
+    if (out->load.data_valid)
+        s->loads[!s->loads[0]] -= out->load.bytes;
+}
+
+static void traffic(bench *b, uint64_t transactions)
+{
+    frame_buffer_face *face = &b->faces->frame_buffer;
+    frame_buffer_out out = b->reset->frame_buffer;
+    sides s = sides_of(b);
+    const frame_buffer_in in = {.fill = &s.fill, .write = &s.write, .load = &s.load};
+    uint64_t done = 0, most = transactions < TRANSACTIONS_A_MEMORY ? transactions : TRANSACTIONS_A_MEMORY;
+    like(b, &s);
+    for (; done < most && !bench_differs(b); b->cycles++) {
+        bool taken = s.load.valid && out.load.ready;
+        if (rng_one_in(&b->random, 200))
+            like(b, &s);
+        face->clock(face->state, &in, &out);
+        done += out.filled.valid + out.written.valid + out.load.data_valid;
+        if (taken)
+            s.load.valid = false;
+        hear(&s, &out);
+        ask(b, &s);
+    }
+    b->left = done < transactions ? transactions - done : 0;
+}
+
+const block_bench bench_frame_buffer = {VODR_BLOCK_FRAME_BUFFER, machines, draw, traffic};

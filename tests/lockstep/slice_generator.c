@@ -1,0 +1,59 @@
+/* slice_generator.c - traffic for the slice generator: any boxes on any slices of the scene's view, one of which is
+ * parallel, the next in perspective; a divider that offers them, a rasterizer that takes slices when it likes. */
+#include "bench.h"
+
+static const char *const machines[] = {"", NULL};
+
+enum { SLICES_A_VIEW = 2000 };
+
+static void draw(rng *random, vodr_machine *m)
+{
+    m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
+    m->slice_setup_cycles = rng_one_in(random, 3) ? 1 : (int32_t)rng_int(random, 2, 9);
+}
+
+/* A range within [0, size], not empty: all of it, its first or last place, or any. */
+static void range(rng *random, int32_t size, int32_t *lo, int32_t *hi)
+{
+    int64_t kind = rng_int(random, 0, 5);
+    *lo = kind == 0 || kind == 1 ? 0 : kind == 2 ? size - 1 : (int32_t)rng_int(random, 0, size - 1);
+    *hi = kind == 0 ? size : kind == 1 ? 1 : (int32_t)rng_int(random, *lo + 1, size);
+}
+
+static brick_port any_brick(bench *b)
+{
+    const vodr_view *v = &b->scene.view;
+    brick_port p = {.valid = true};
+    for (int c = 0; c < 3; c++)
+        range(&b->random, b->scene.input.dims_vox[c], &p.box.lo[c], &p.box.hi[c]);
+    range(&b->random, v->width_px, &p.bound.x0, &p.bound.x1);
+    range(&b->random, v->height_px, &p.bound.y0, &p.bound.y1);
+    range(&b->random, v->slices, &p.k0, &p.k1);
+    return p;
+}
+
+static void traffic(bench *b, uint64_t transactions)
+{
+    slice_generator_face *face = &b->faces->slice_generator;
+    slice_generator_out out = b->reset->slice_generator;
+    brick_port brick = {.valid = false};
+    ready_port ready = {false};
+    const slice_generator_in in = {.brick = &brick, .slice = &ready};
+    uint64_t done = 0, most = transactions < SLICES_A_VIEW ? transactions : SLICES_A_VIEW;
+    int64_t haste = 1;
+    for (; done < most && !bench_differs(b); b->cycles++) {
+        bool taken = brick.valid && out.brick.ready;
+        if (rng_one_in(&b->random, 100))
+            haste = rng_one_in(&b->random, 2) ? rng_int(&b->random, 2, 30) : 1;
+        done += out.slice.valid && ready.ready;
+        face->clock(face->state, &in, &out);
+        if (taken)
+            brick.valid = false;
+        if (!brick.valid && !rng_one_in(&b->random, 3))
+            brick = any_brick(b);
+        ready.ready = rng_one_in(&b->random, haste);
+    }
+    b->left = transactions - done;
+}
+
+const block_bench bench_slice_generator = {VODR_BLOCK_SLICE_GENERATOR, machines, draw, traffic};
