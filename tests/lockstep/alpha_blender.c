@@ -72,4 +72,4 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_alpha_blender = {VODR_BLOCK_ALPHA_BLENDER, machines, draw, traffic};
+const block_bench bench_alpha_blender = {VODR_BLOCK_ALPHA_BLENDER, machines, draw, NULL, traffic};

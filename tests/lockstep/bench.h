@@ -30,6 +30,8 @@ typedef struct block_bench {
     const char *const *machines;
     /* Draws what it has as registers. NULL: nothing. */
     void (*draw)(rng *random, vodr_machine *machine);
+    /* Draws another view than case_make() did. NULL: none. */
+    void (*look)(rng *random, test_case *scene);
     /* Clocks the block until that many transactions are done, or bench_differs(). */
     void (*traffic)(bench *b, uint64_t transactions);
 } block_bench;

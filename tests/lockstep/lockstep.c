@@ -64,6 +64,9 @@ static void begin(const block_bench *what, const char *settings, uint64_t seed, 
     if (what->draw) {
         what->draw(&b->random, &b->machine);
     }
+    if (what->look) {
+        what->look(&b->random, &b->scene);
+    }
     b->scene.table.count = (size_t)1 << b->machine.density_bits;
     b->scene.entries = realloc(b->scene.entries, b->scene.table.count * sizeof *b->scene.entries);
     b->scene.table.entries = b->scene.entries;

@@ -267,4 +267,4 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_texture_unit = {VODR_BLOCK_TEXTURE_UNIT, machines, draw, traffic};
+const block_bench bench_texture_unit = {VODR_BLOCK_TEXTURE_UNIT, machines, draw, NULL, traffic};

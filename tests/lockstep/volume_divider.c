@@ -1,6 +1,7 @@
 /* volume_divider.c - traffic for the volume divider: nothing goes in but the slice generator's answer. What comes out
  * follows from view and machine, so an episode is a frame, and a transaction a visit or the frame's end. */
 #include "bench.h"
+#include "unit.h"
 
 /* Bricks of 5 voxels and more: volumes have 4096 of them at most, which is as many as a library knows to leave out. */
 static const char *const machines[] = {"traversal=whole",
@@ -18,6 +19,39 @@ static void draw(rng *random, vodr_machine *m)
     m->brick = (int32_t)rng_int(random, 5, rng_one_in(random, 3) ? 60 : 16);
     m->brick_setup_cycles = (int32_t)rng_int(random, 29, rng_one_in(random, 4) ? 70 : 34);
     m->cache_bytes = 256 << rng_int(random, 0, 6);
+}
+
+/* Perspective along an axis in powers of two, the eye on a voxel's corner: corners of boxes lie on pixels exactly, some
+ * of them in the eye's plane, so that no quotient has a remainder to hide behind. */
+static vodr_view plain_view(rng *random, const int32_t dims_vox[3])
+{
+    int depth = (int)rng_int(random, 0, 2), across = (depth + 1) % 3, down = (depth + 2) % 3;
+    int64_t unit = (int64_t)(rng_one_in(random, 2) ? 1 : -1) << 28;
+    vodr_view v = {.perspective = true, .shift = 8, .footprint = 1 << 20};
+    v.width_px = (int32_t)rng_int(random, 1, 40);
+    v.height_px = (int32_t)rng_int(random, 1, 40);
+    v.slices = (int32_t)rng_int(random, 1, 40);
+    v.depth_step = -(rng_int(random, 0, 8) << 16);
+    v.depth_first = (rng_int(random, 1, 60) << 16) - v.slices * v.depth_step;
+    v.step_s[depth] = unit; /* 1/16 voxel a depth */
+    v.step_u[across] = unit >> rng_int(random, 3, 6);
+    v.step_v[down] = -unit >> rng_int(random, 3, 6);
+    v.step_s[across] = -(v.width_px / 2) * v.step_u[across];
+    v.step_s[down] = -(v.height_px / 2) * v.step_v[down];
+    for (int c = 0; c < 3; c++)
+        v.base[c] = rng_int(random, -10, dims_vox[c] + 10) * (1 << 24);
+    return v;
+}
+
+static void look(rng *random, test_case *scene)
+{
+    const int32_t *dims = scene->input.dims_vox;
+    switch (rng_int(random, 0, 4)) {
+    case 0: scene->view = unit_wild_view(random, dims, rng_one_in(random, 2)); break;
+    case 1: scene->view = plain_view(random, dims); break;
+    default: break;
+    }
+    assert_int_equal(vodr_view_check(&scene->view, dims, NULL), VODR_OK);
 }
 
 static void traffic(bench *b, uint64_t transactions)
@@ -41,4 +75,4 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = done < transactions ? transactions - done : 0;
 }
 
-const block_bench bench_volume_divider = {VODR_BLOCK_VOLUME_DIVIDER, machines, draw, traffic};
+const block_bench bench_volume_divider = {VODR_BLOCK_VOLUME_DIVIDER, machines, draw, look, traffic};
