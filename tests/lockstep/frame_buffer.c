@@ -155,4 +155,4 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = done < transactions ? transactions - done : 0;
 }
 
-const block_bench bench_frame_buffer = {VODR_BLOCK_FRAME_BUFFER, machines, draw, traffic};
+const block_bench bench_frame_buffer = {VODR_BLOCK_FRAME_BUFFER, machines, draw, NULL, traffic};

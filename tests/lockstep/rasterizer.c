@@ -89,4 +89,4 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_rasterizer = {VODR_BLOCK_RASTERIZER, machines, NULL, traffic};
+const block_bench bench_rasterizer = {VODR_BLOCK_RASTERIZER, machines, NULL, NULL, traffic};

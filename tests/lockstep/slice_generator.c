@@ -56,4 +56,4 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = transactions - done;
 }
 
-const block_bench bench_slice_generator = {VODR_BLOCK_SLICE_GENERATOR, machines, draw, traffic};
+const block_bench bench_slice_generator = {VODR_BLOCK_SLICE_GENERATOR, machines, draw, NULL, traffic};
