@@ -5,6 +5,8 @@
 //   read, read_pixel, read_at   in   a pixel is read in this cycle: which, and the place of its line
 //   known_at                    out  of the pixel read two cycles ago: the place of its line
 //   done_pixel, done_at         out  of the pixel whose blend is over in the next cycle
+//   install, install_at         in   another line takes this place: what is being blended there is of the line before
+//   done_replaced               out  that has happened to it
 //   any                         out  a blend is under way
 //   ask, asked, hazard          in, in, out  whether this pixel's blend is under way; NEXT: or will be in the next cycle
 //
@@ -27,7 +29,11 @@ module cache_blends #(
     output     [PLACE_BITS-1:0] known_at,
     output     [PIXEL_BITS-1:0] done_pixel,
     output     [PLACE_BITS-1:0] done_at,
+    output                      done_replaced,
     output                      any,
+
+    input                       install,
+    input      [PLACE_BITS-1:0] install_at,
 
     input                       ask,
     input      [PIXEL_BITS-1:0] asked,
@@ -36,7 +42,7 @@ module cache_blends #(
     localparam SLOT_BITS = $clog2(BLEND_CYCLES);
     localparam [31:0] LAST = BLEND_CYCLES - 1, BACK = BLEND_CYCLES - 2;
 
-    reg [BLEND_CYCLES-1:0] live;
+    reg [BLEND_CYCLES-1:0] live, replaced;
     reg   [PIXEL_BITS-1:0] pixels [0:BLEND_CYCLES-1];
     reg   [PLACE_BITS-1:0] places [0:BLEND_CYCLES-1];
     reg    [SLOT_BITS-1:0] now;
@@ -48,6 +54,7 @@ module cache_blends #(
     assign done_pixel = pixels[done];
     assign done_at    = places[done];
     assign any        = |live;
+    assign done_replaced = replaced[done];
 
     always @(posedge clk)
         if (rst) begin
@@ -62,6 +69,17 @@ module cache_blends #(
                 places[now] <= read_at;
             end
         end
+
+    integer j;
+    // Whatever lies in slots that are not live may be marked too.
+    always @(posedge clk) begin
+        if (install)
+            for (j = 0; j < BLEND_CYCLES; j = j + 1)
+                if (places[j] == install_at)
+                    replaced[j] <= 1'b1;
+        if (read)
+            replaced[now] <= 1'b0;
+    end
 
     integer i;
     always @* begin

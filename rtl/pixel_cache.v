@@ -32,12 +32,16 @@ module pixel_cache #(
     parameter BLEND_CYCLES       = `VODR_DEFAULT_BLEND_CYCLES,
     parameter NONBLOCKING        = `VODR_DEFAULT_NONBLOCKING,
     parameter NONBLOCKING_FIFO   = `VODR_DEFAULT_NONBLOCKING_FIFO,
-    parameter NONBLOCKING_MISSES = `VODR_DEFAULT_NONBLOCKING_MISSES
+    parameter NONBLOCKING_MISSES = `VODR_DEFAULT_NONBLOCKING_MISSES,
+    parameter WRITE_FIFO         = `VODR_DEFAULT_WRITE_FIFO,
+    parameter FRAME_LINES        = 1                // of clear_on_first_touch
 ) (
     input                                  clk,
     input                                  rst,
     input                                  index,
     input                            [1:0] replacement,
+    input                                  write_policy,
+    input                                  clear_on_first_touch,
     input                                  fb_layout,
     input                           [15:0] lines_across,
 
@@ -89,7 +93,7 @@ module pixel_cache #(
     localparam H_BITS      = $clog2(LINE_H);
     localparam NUMBER_BITS = 28 - W_BITS - H_BITS;             // a frame has up to 16384x16384 pixels
     localparam BYTE_BITS   = $clog2(LINE / 8);
-    localparam [31:0] X_MASK = LINE_W - 1, Y_MASK = LINE_H - 1, BYTES = LINE / 8;
+    localparam [31:0] X_MASK = LINE_W - 1, Y_MASK = LINE_H - 1, BYTES = LINE / 8, PIXEL_BYTES = PIXEL / 8;
 
     localparam DEPTH       = NONBLOCKING != 0 ? NONBLOCKING_FIFO : 1;
     localparam DEPTH_BITS  = DEPTH > 1 ? $clog2(DEPTH) : 1;
@@ -139,6 +143,8 @@ module pixel_cache #(
     wire  [PLACE_BITS-1:0] at;
     reg   [PLACE_BITS-1:0] flush_at;
     wire                   misses = looks & ~door_hit;
+    wire                   touches;      // and its line is zeros
+    wire                   through = write_policy == `VODR_WRITE_POLICY_THROUGH;
 
     always @* begin
         arriving = 0;
@@ -152,6 +158,13 @@ module pixel_cache #(
         .clk(clk), .rst(rst), .index(index), .replacement(replacement),
         .arrives(arrives), .arriving(arriving), .arriving_hit(arriving_hit), .line(door_line), .hit(door_hit),
         .look_up(looks), .at(at), .replaces(replaces), .victim(victim), .place(flush_at), .held(flush_line)
+    );
+
+    cache_touched #(
+        .FRAME_LINES(FRAME_LINES), .NUMBER_BITS(NUMBER_BITS)
+    ) first_touch (
+        .clk(clk), .rst(rst), .clear_on_first_touch(clear_on_first_touch),
+        .misses(misses), .line(door_line), .first(touches)
     );
 
     always @(posedge clk) begin
@@ -168,17 +181,17 @@ module pixel_cache #(
 
     // ---- looked up and not read: the queue, and what misses replace ----
 
-    reg [PLACE_BITS+31:0] queue [0:(1<<DEPTH_BITS)-1];
+    reg [PLACE_BITS+32:0] queue [0:(1<<DEPTH_BITS)-1];
     reg  [DEPTH_BITS-1:0] first, last;  // the oldest, and where the next goes
     reg    [DEPTH_BITS:0] count;
     wire                  pushes = looks & (NONBLOCKING != 0 | ~door_hit);
     reg                   pops;         // its pixel is read
     reg                   evicted;      // the line that the oldest replaces is out of the way
 
-    wire                  front_misses, front_replaces;
+    wire                  front_misses, front_fills, front_replaces;
     wire [PLACE_BITS-1:0] front_at;
     wire           [29:0] front_pixel;
-    assign {front_misses, front_replaces, front_at, front_pixel} = queue[first];
+    assign {front_misses, front_fills, front_replaces, front_at, front_pixel} = queue[first];
     wire                  waiting    = count != 0;
     wire   [DEPTH_BITS:0] count_next = count + {{DEPTH_BITS{1'b0}}, pushes} - {{DEPTH_BITS{1'b0}}, pops};
 
@@ -205,10 +218,10 @@ module pixel_cache #(
         end else begin
             count      <= count_next;
             miss_count <= miss_count_next;
-            wanted     <= misses;
+            wanted     <= misses & ~touches;
             evicted    <= ~pops & (evicted | passes | moves);
             if (pushes) begin
-                queue[last] <= {misses, replaces, at, door_pixel};
+                queue[last] <= {misses, misses & ~touches, replaces, at, door_pixel};
                 last        <= last + 1'b1;
             end
             if (misses) begin
@@ -231,7 +244,7 @@ module pixel_cache #(
     wire                  blends;       // some pixel is being blended
     wire [PLACE_BITS-1:0] known_at;
     reg       [LINES-1:0] dirty;
-    wire                  soils   = blended_known & blended_known_writes;
+    wire                  soils   = blended_known & blended_known_writes & ~through;
     wire                  dirties = front_replaces & (dirty[front_at] | (soils & known_at == front_at));
     reg                   just_read;
     wire                  hazard;       // the pixel asked for is being blended
@@ -241,6 +254,7 @@ module pixel_cache #(
     wire                  pending = write_pending & ~written_valid;
     wire                  may_move = ~pending & ~blends;
 
+    wire                  unsettled;    // an access to the line asked for has a place of the write FIFO
     reg     [MISS_BITS:0] fill_count;
     reg                   passes, moves; // the replaced line is out of the way, or moves there
     reg             [3:0] status;
@@ -257,7 +271,7 @@ module pixel_cache #(
                 else if (dirties) begin
                     moves  = may_move;
                     status = moves && NONBLOCKING == 0 ? `STATUS_STALLED_FILL : `STATUS_STALLED_WRITE_BACK;
-                end else if (NONBLOCKING == 0 && pending && write_line == missed_line)
+                end else if (NONBLOCKING == 0 && front_fills && ((pending && write_line == missed_line) || unsettled))
                     status = `STATUS_STALLED_WRITE_BACK;
                 else begin
                     passes = 1'b1;
@@ -265,7 +279,7 @@ module pixel_cache #(
                 end
             end
             if (evicted || (passes && NONBLOCKING != 0)) begin
-                pops   = ~front_misses | fill_count != 0;
+                pops   = ~front_fills | fill_count != 0;
                 status = pops ? `STATUS_BUSY : `STATUS_STALLED_FILL;
             end
         end
@@ -285,18 +299,20 @@ module pixel_cache #(
     reg        [LINE-1:0] data   [0:LINES-1];
     reg        [LINE-1:0] filled [0:MISSES-1];  // lines that came and wait for their miss's turn
     reg   [MISS_BITS-1:0] fill_first, fill_last;
+    wire                  fill_pops = pops & front_fills;
     wire           [29:0] done_pixel;
+    wire                  done_replaced;
     wire [PLACE_BITS-1:0] done_at;
     wire [PLACE_BITS-1:0] read_at = flushes ? flush_at : hits ? at : front_at;
 
     always @(posedge clk) begin
         pixel_valid <= reads & ~rst;
-        if (blended_valid & blended_writes)
+        if (blended_valid & blended_writes & ~done_replaced)
             data[done_at][bit_of(done_pixel) +: PIXEL] <= blended_rgba;
         if (miss_pops)
-            data[front_at] <= filled[fill_first];
+            data[front_at] <= front_fills ? filled[fill_first] : 0;
         if (miss_pops)
-            pixel_rgba <= filled[fill_first][bit_of(read_pixel) +: PIXEL];
+            pixel_rgba <= front_fills ? filled[fill_first][bit_of(read_pixel) +: PIXEL] : 0;
         else if (reads)
             pixel_rgba <= data[read_at][bit_of(read_pixel) +: PIXEL];
     end
@@ -307,17 +323,17 @@ module pixel_cache #(
             fill_last  <= 0;
             fill_count <= 0;
         end else begin
-            fill_count <= fill_count + {{MISS_BITS{1'b0}}, filled_valid} - {{MISS_BITS{1'b0}}, miss_pops};
+            fill_count <= fill_count + {{MISS_BITS{1'b0}}, filled_valid} - {{MISS_BITS{1'b0}}, fill_pops};
             if (filled_valid) begin
                 filled[fill_last] <= filled_data;
                 fill_last         <= after(fill_last);
             end
-            if (miss_pops)
+            if (fill_pops)
                 fill_first <= after(fill_first);
         end
 
     always @(posedge clk) begin
-        fill_valid   <= ~rst & (NONBLOCKING != 0 ? wanted : passes | moves);
+        fill_valid   <= ~rst & (NONBLOCKING != 0 ? wanted : (passes | moves) & front_fills);
         fill_address <= address_of(missed_line);
     end
 
@@ -346,14 +362,19 @@ module pixel_cache #(
     end
 
     always @(posedge clk) begin
-        write_valid   <= ~rst & (moves | flushes);
+        write_valid   <= ~rst & (moves | flushes | settles);
         write_pending <= ~rst & (moves | flushes | pending);
-        report_idle   <= ~rst & empty & ~|dirty;
+        report_idle   <= ~rst & empty & ~|dirty & ~settles;
         if (moves | flushes) begin
             write_line    <= moved_line;
             write_address <= address_of(moved_line);
             write_bytes   <= BYTES[13:0];
             write_data    <= data[read_at];
+        end
+        if (settles) begin
+            write_address          <= address_of(settled_line) + {16'b0, bit_of(settled_pixel)} / 8;
+            write_bytes            <= PIXEL_BYTES[13:0];
+            write_data[PIXEL-1:0]  <= settled_rgba;
         end
     end
 
@@ -367,6 +388,34 @@ module pixel_cache #(
                 dirty[read_at] <= 1'b0;
         end
 
+    // ---- written through ----
+
+    reg                    settled, settled_writes; // a blend was over in the cycle before
+    reg        [PIXEL-1:0] settled_rgba;
+    reg             [29:0] settled_pixel;
+    wire [NUMBER_BITS-1:0] settled_line;
+    wire                   settles = settled & settled_writes;
+    wire                   full;                    // there is no place in the next cycle
+
+    always @(posedge clk)
+        if (rst)
+            settled <= 1'b0;
+        else if (through) begin
+            settled        <= blended_valid;
+            settled_writes <= blended_writes;
+            settled_rgba   <= blended_rgba;
+            settled_pixel  <= done_pixel;
+        end
+
+    cache_places #(
+        .WRITE_FIFO(WRITE_FIFO), .NUMBER_BITS(NUMBER_BITS), .OWN(NONBLOCKING == 0)
+    ) places (
+        .clk(clk), .rst(rst), .through(through), .take(looks), .take_line(door_line),
+        .settle(settled), .settle_writes(settled_writes), .settle_line(settled_line), .granted(written_valid),
+        .full(full), .ask(NONBLOCKING != 0 ? next_alive & ~next_hit : waiting & ~evicted),
+        .asked(NONBLOCKING != 0 ? next_line : missed_line), .unsettled(unsettled)
+    );
+
     // ---- blends ----
 
     wire           [29:0] next_pixel = arrives ? {colour_y, colour_x} : door_pixel;
@@ -376,7 +425,8 @@ module pixel_cache #(
         .BLEND_CYCLES(BLEND_CYCLES), .PIXEL_BITS(30), .PLACE_BITS(PLACE_BITS), .NEXT(NONBLOCKING == 0)
     ) blending (
         .clk(clk), .rst(rst), .read(reads), .read_pixel(read_pixel), .read_at(read_at),
-        .known_at(known_at), .done_pixel(done_pixel), .done_at(done_at), .any(blends),
+        .known_at(known_at), .done_pixel(done_pixel), .done_at(done_at),
+        .done_replaced(done_replaced), .any(blends), .install(miss_pops & through), .install_at(front_at),
         .ask(NONBLOCKING != 0 ? waiting & ~evicted : next_alive & count_next == 0),
         .asked(NONBLOCKING != 0 ? front_pixel : next_pixel), .hazard(hazard)
     );
@@ -393,12 +443,12 @@ module pixel_cache #(
         m       = 0;
         blocked = 1'b0;
         if (NONBLOCKING == 0)
-            blocked = count_next != 0;
+            blocked = count_next != 0 | (next_alive & full);
         else if (next_alive) begin
-            blocked = count_next == FULL[DEPTH_BITS:0];
+            blocked = count_next == FULL[DEPTH_BITS:0] | full;
             if (!next_hit && !blocked) begin
                 blocked = miss_count_next == ALL_MISSES[MISS_BITS:0]
-                          | (pending & write_line == next_line)
+                          | (pending & write_line == next_line) | unsettled
                           | (misses & replaces & victim == next_line);
                 for (m = 0; m < MISSES; m = m + 1)
                     if (leaving[m] && victims[m] == next_line && !(passes && front_misses && m[MISS_BITS-1:0] == first_miss))

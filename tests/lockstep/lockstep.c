@@ -16,7 +16,8 @@
 enum { EPISODE_TRANSACTIONS = 5000 };
 
 static const block_bench *const benches[] = {&bench_volume_divider, &bench_slice_generator, &bench_rasterizer,
-                                             &bench_texture_unit,   &bench_alpha_blender,   &bench_frame_buffer};
+                                             &bench_texture_unit,   &bench_alpha_blender,   &bench_pixel_cache,
+                                             &bench_frame_buffer};
 
 static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp}};
 
