@@ -48,7 +48,7 @@ typedef struct sides {
 static sides sides_of(const bench *b)
 {
     const vodr_machine *m = &b->machine;
-    const block_setup *setup = clocked_setup(b->whole);
+    const block_setup *setup = &b->setup;
     sides s = {.setup = setup, .line_bytes = line_bytes(m), .pixel_bytes = pixel_bytes(m), .bricks = 1};
     s.lines = setup->storage->texture_base / s.line_bytes;
     for (int c = 0; c < 3; c++)

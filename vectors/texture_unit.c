@@ -45,7 +45,7 @@ typedef struct visits {
 
 static vox_box box_of(const bench *b, uint64_t number)
 {
-    const block_setup *setup = clocked_setup(b->whole);
+    const block_setup *setup = &b->setup;
     vox_box box;
     for (int c = 0; c < 3; c++) {
         int32_t size = setup->volume->dims_vox[c], edge = setup->edge_vox[c], count = setup->walk->bricks[c];
@@ -58,7 +58,7 @@ static vox_box box_of(const bench *b, uint64_t number)
 
 static void hand_on(bench *b, visits *v, int64_t haste)
 {
-    const volume_divider *walk = clocked_setup(b->whole)->walk;
+    const volume_divider *walk = b->setup.walk;
     int64_t bricks = (int64_t)walk->bricks[0] * walk->bricks[1] * walk->bricks[2];
     v->port.valid = v->port.fresh = v->known - v->drawn < VISITS && rng_one_in(&b->random, haste);
     if (!v->port.fresh)
