@@ -144,23 +144,13 @@ vodr_status bench_set_up(bench *b, vodr_error *error)
     return status;
 }
 
-/* DO(NAME, name) for each block. */
-#define BLOCKS(DO)                                                                                                     \
-    DO(VOLUME_DIVIDER, volume_divider)                                                                                 \
-    DO(SLICE_GENERATOR, slice_generator)                                                                               \
-    DO(RASTERIZER, rasterizer)                                                                                         \
-    DO(TEXTURE_UNIT, texture_unit)                                                                                     \
-    DO(ALPHA_BLENDER, alpha_blender)                                                                                   \
-    DO(PIXEL_CACHE, pixel_cache)                                                                                       \
-    DO(FRAME_BUFFER, frame_buffer)
-
 vodr_status bench_start(bench *b, vodr_block block, vodr_error *error)
 {
     bool made = false;
     switch (block) {
 #define START(NAME, name)                                                                                              \
     case VODR_BLOCK_##NAME: made = clocked_##name(&b->setup, &b->faces->name, &b->reset->name); break;
-        BLOCKS(START)
+        BENCH_BLOCKS(START)
     default: break;
     }
     return made ? VODR_OK : vodr_fail(error, VODR_NO_MEMORY, "no memory for a block");
@@ -188,7 +178,7 @@ void bench_close(bench *b)
 #define FINISH(NAME, name)                                                                                             \
     if (b->own.faces.name.state && b->own.faces.name.finish)                                                           \
         b->own.faces.name.finish(b->own.faces.name.state);
-    BLOCKS(FINISH)
+    BENCH_BLOCKS(FINISH)
     storage_finish(&b->own.storage);
     volume_divider_finish(&b->own.walk);
     texture_unit_finish(&b->own.tables);
@@ -201,7 +191,7 @@ void bench_clock(const bench *b, vodr_block block, const void *in, void *out)
     switch (block) {
 #define CLOCK(NAME, name)                                                                                              \
     case VODR_BLOCK_##NAME: b->faces->name.clock(b->faces->name.state, in, out); break;
-        BLOCKS(CLOCK)
+        BENCH_BLOCKS(CLOCK)
     default: break;
     }
 }

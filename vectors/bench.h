@@ -11,6 +11,8 @@
 #include "texture_unit.h"
 #include "volume_divider.h"
 
+enum { VECTORS_LEVELS = 2 };
+
 /* What a block's registers and tables come from. */
 typedef struct bench_scene {
     vodr_view view;
@@ -51,7 +53,25 @@ typedef struct block_bench {
     void (*look)(rng *random, const int32_t dims_vox[3], vodr_view *view);
     /* Clocks the block until that many transactions are done, or bench_differs(). */
     void (*traffic)(bench *b, uint64_t transactions);
+    /* Says why a cycle's inputs are not legal, given what the block shows in that cycle; NULL: they are. It remembers
+     * what came before in `rules`, of rules_bytes, all zero before the first cycle. What passes can harm no block in C,
+     * and is what the Verilog may count on. */
+    const char *(*illegal)(const bench *b, void *rules, const void *in, const void *shown);
+    size_t rules_bytes;
+    const char *vectors;  /* the machine of test vectors, on top of paper-16: small lines, few of them */
+    uint64_t case_cycles; /* of a case of them, at most */
+    uint64_t level_cycles[VECTORS_LEVELS]; /* of all cases of a level, at least */
 } block_bench;
+
+/* DO(NAME, name) for each block. */
+#define BENCH_BLOCKS(DO)                                                                                               \
+    DO(VOLUME_DIVIDER, volume_divider)                                                                                 \
+    DO(SLICE_GENERATOR, slice_generator)                                                                               \
+    DO(RASTERIZER, rasterizer)                                                                                         \
+    DO(TEXTURE_UNIT, texture_unit)                                                                                     \
+    DO(ALPHA_BLENDER, alpha_blender)                                                                                   \
+    DO(PIXEL_CACHE, pixel_cache)                                                                                       \
+    DO(FRAME_BUFFER, frame_buffer)
 
 /* By number; NULL where there is no such block. */
 const block_bench *bench_of(vodr_block block);

@@ -70,4 +70,22 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = done < transactions ? transactions - done : 0;
 }
 
-const block_bench bench_volume_divider = {VODR_BLOCK_VOLUME_DIVIDER, machines, draw, look, traffic};
+/* Its one input may be what it likes. */
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    (void)b;
+    (void)rules;
+    (void)inputs;
+    (void)shown;
+    return NULL;
+}
+
+const block_bench bench_volume_divider = {.block = VODR_BLOCK_VOLUME_DIVIDER,
+                                          .machines = machines,
+                                          .draw = draw,
+                                          .look = look,
+                                          .traffic = traffic,
+                                          .illegal = illegal,
+                                          .vectors = "skip_empty=1 texture_memory_bytes=1048576",
+                                          .case_cycles = 2048,
+                                          .level_cycles = {30000, 1000000}};

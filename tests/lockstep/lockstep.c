@@ -15,6 +15,7 @@
 #include "bench.h"
 #include "exhaustive.h"
 #include "lockstep.h"
+#include "modules.h"
 
 enum { EPISODE_TRANSACTIONS = 5000 };
 
@@ -32,6 +33,30 @@ typedef struct episode {
     lockstep pair;
 } episode;
 
+/* rtl/modules.c says which inputs a module has beside its ports. */
+static void check_inputs(vodr_block block, const rtl_library *l)
+{
+    const rtl_module *m = rtl_module_of(block);
+    const char *const others[] = {"clk", "rst", "memory_read_data"};
+    int32_t known = m->table ? 3 : 0, inputs = 0;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        known += rtl_library_port(l, others[i]) != NULL;
+    }
+    const block_signals *s = signals_of(block);
+    for (int32_t i = 0; i < s->count; i++) {
+        known += s->ports[i].output ? 0 : s->ports[i].count;
+    }
+    for (const module_register *r = m->registers; r->name; r++) {
+        const vodr_rtl_port *p = rtl_library_port(l, r->name);
+        assert_true(p && !p->output && p->width_bits == r->width_bits);
+        known++;
+    }
+    for (int32_t i = 0; i < l->model.port_count; i++) {
+        inputs += !l->model.ports[i].output;
+    }
+    assert_int_equal(inputs, known);
+}
+
 /* The bench stops at the first difference. */
 static void begin(const block_bench *what, const char *settings, uint64_t seed, episode *e)
 {
@@ -46,6 +71,7 @@ static void begin(const block_bench *what, const char *settings, uint64_t seed, 
     if (lockstep_open(&e->pair, &source, what->block, &b->setup, b->faces, b->reset, &error) != RTL_OK) {
         fail_msg("%s", error.text);
     }
+    check_inputs(what->block, &e->pair.rtl.library);
     b->differs = &e->pair.first.found;
 }
 
