@@ -3,5 +3,6 @@
 #define TESTS_EXHAUSTIVE_H
 
 void lockstep_lerp(void **state);
+void lockstep_blend(void **state);
 
 #endif

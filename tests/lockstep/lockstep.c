@@ -1,7 +1,8 @@
 /* lockstep.c - runs the lock-step benches.
  *   lockstep [--transactions N] [--seed S] [BLOCK]...    20,000 transactions a machine of every block, from seed 1
- *   lockstep lerp                                        arithmetic alone, of all operands; without a name it is run
- * too A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
+ *   lockstep lerp | blend                                arithmetic, of all operands; run without a name, too
+ *
+ * A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +20,8 @@
 
 enum { EPISODE_TRANSACTIONS = 5000 };
 
-static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp}};
+static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp},
+                                               {.name = "blend", .test_func = lockstep_blend}};
 
 enum { EXHAUSTIVE = sizeof exhaustive / sizeof *exhaustive };
 
