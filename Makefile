@@ -49,7 +49,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-reference bench-sweep findings contact-sheet crosscheck fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long findings contact-sheet crosscheck fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -75,6 +75,20 @@ check-long: ## the same, with 10,000 random cases, 20,000 for the cycles
 	@scripts/deps check fuzz
 	@$(MAKE) -s $(PARALLEL) all tests
 	@scripts/check --long $(BUILD)
+
+cosim-long: ## whole frames of 256^3 in Verilog beside C, a million transactions a block, faults in every block (hours)
+	@scripts/deps rtl check
+	@$(MAKE) -s $(PARALLEL) all tests
+	@$(BUILD)/tests/lockstep/lockstep --transactions 1000000
+	@$(BUILD)/tests/test_cosim 1000
+	@tests/cosim.sh --long $(BUILD)/vodr
+	@scripts/cosim $(BUILD) 256
+
+bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
+	@scripts/deps rtl
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/cosim_rate
+	@scripts/tables $(BUILD) cosim
+	@cat $(BUILD)/tables/cosim
 
 fuzz: ## fuzz every parser for an hour each, two at a time
 	@scripts/deps fuzz
@@ -114,11 +128,12 @@ table-cycles: ## cycles a frame, divided or not; what counting them costs
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/bench/table_cycles
 
-lint: ## check formatting, shell scripts, layers, links and docs/parameters.md
+lint: ## check formatting, shell scripts, Verilog, layers, links and docs/parameters.md
 	@scripts/deps lint
-	@$(MAKE) -s $(BUILD)/generate
+	@$(MAKE) -s $(BUILD)/generate $(BUILD)/gen/vodr_hw.vh
 	@clang-format --dry-run -Werror $(SOURCES)
 	@shellcheck $(SCRIPTS)
+	@scripts/lint-rtl $(BUILD)
 	@scripts/layers
 	@scripts/links
 	@$(BUILD)/generate markdown $(HW) | diff -u docs/parameters.md - || { echo 'docs/parameters.md is stale: make docs' >&2; exit 1; }
@@ -131,7 +146,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
@@ -191,8 +206,8 @@ $(BUILD)/libvectors.a: $(VECTORS)
 	@rm -f $@
 	ar rcs $@ $^
 
-# Where co-simulation finds what it builds libraries of, and keeps them.
-WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(BUILD))"'
+# Where co-simulation finds what it builds libraries of, and keeps them: builds of one tree share theirs.
+WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(if $(filter build/%,$(BUILD)),build,$(BUILD)))"'
 $(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)

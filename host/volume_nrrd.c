@@ -83,15 +83,12 @@ static host_status check_line(const char *path, const char *line, host_error *er
 
 /* Reads a line without its end, which is '\n', '\r' or both, or its first MAX_LINE_BYTES bytes. Returns the byte that
  * ended it, EOF at the end of the file. */
-static int read_line(FILE *file, char line[MAX_LINE_BYTES + 1])
+static int read_line(FILE *file, char line[MAX_LINE_BYTES + 1], size_t *length)
 {
-    size_t length = 0;
     int c = getc(file);
-    while (c != EOF && c != '\n' && c != '\r' && length < MAX_LINE_BYTES) {
-        line[length++] = (char)c;
-        c = getc(file);
-    }
-    line[length] = '\0';
+    for (*length = 0; c != EOF && c != '\n' && c != '\r' && *length < MAX_LINE_BYTES; c = getc(file))
+        line[(*length)++] = (char)c;
+    line[*length] = '\0';
     if (c == '\r' && (c = getc(file)) != '\n') {
         ungetc(c, file);
         c = '\r';
@@ -106,10 +103,14 @@ static host_status check_lines(const char *path, FILE *file, host_error *error)
     host_status status = line ? HOST_OK : host_fail(error, HOST_ENVIRONMENT, "%s: out of memory", path);
     int end = 0;
     while (status == HOST_OK && end != EOF) {
-        end = read_line(file, line);
-        if (!line[0] && end == '\n')
+        size_t length;
+        end = read_line(file, line, &length);
+        if (!length && end == '\n')
             break;
-        status = check_line(path, line, error);
+        /* What is behind it would not be looked at here, and teem goes on to the empty line. */
+        status = strlen(line) == length
+                     ? check_line(path, line, error)
+                     : host_fail(error, HOST_BAD_INPUT, "%s: a line of the NRRD header holds a byte of value 0", path);
     }
     free(line);
     rewind(file);

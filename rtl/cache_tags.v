@@ -6,7 +6,7 @@
 //   look_up             in   the fragment at the door is looked up: what is known of lines changes
 //   at                  out  then: the place of its line, which a miss gives it
 //   replaces, victim    out  then: a miss puts it in the place of another line
-//   place, held         in, out  any other time: the line that a place holds
+//   flush, flush_at     in   when nothing is looked up: `at` is this place, and `victim` the line that it holds
 //
 //   arriving ─► set ─► tags of all ways ─► = ─► line, hit, way ──► at
 //                         ▲   valid              │ set
@@ -35,12 +35,11 @@ module cache_tags #(
     output reg                   hit,
 
     input                        look_up,
+    input                        flush,
+    input       [PLACE_BITS-1:0] flush_at,
     output      [PLACE_BITS-1:0] at,
     output reg                   replaces,
-    output     [NUMBER_BITS-1:0] victim,
-
-    input       [PLACE_BITS-1:0] place,
-    output     [NUMBER_BITS-1:0] held
+    output reg [NUMBER_BITS-1:0] victim
 );
     localparam SET_BITS = SETS > 1 ? $clog2(SETS) : 1;
     localparam WAY_BITS = WAYS > 1 ? $clog2(WAYS) : 1;
@@ -55,20 +54,22 @@ module cache_tags #(
 
     reg  [SET_BITS-1:0] set;
     reg  [WAY_BITS-1:0] hit_way, way;
-    wire [SET_BITS-1:0] place_set;
-    wire [WAY_BITS-1:0] place_way;
+    wire [SET_BITS-1:0] flush_set;
+    wire [WAY_BITS-1:0] flush_way;
+    wire [SET_BITS-1:0] at_set = flush ? flush_set : set;
+    wire [WAY_BITS-1:0] at_way = flush ? flush_way : way;
     generate
         if (WAYS == 1) begin : direct_mapped
-            assign at        = set;
-            assign place_set = place;
-            assign place_way = 1'b0;
+            assign at        = at_set;
+            assign flush_set = flush_at;
+            assign flush_way = 1'b0;
         end else if (SETS == 1) begin : fully_associative
-            assign at        = way;
-            assign place_set = 1'b0;
-            assign place_way = place;
+            assign at        = at_way;
+            assign flush_set = 1'b0;
+            assign flush_way = flush_at;
         end else begin : set_associative
-            assign at = {set, way};
-            assign {place_set, place_way} = place;
+            assign at = {at_set, at_way};
+            assign {flush_set, flush_way} = flush_at;
         end
     endgenerate
 
@@ -160,6 +161,12 @@ module cache_tags #(
         end
     end
 
+    always @* begin
+        victim = 0;
+        if (misses | flush)
+            victim = tags[at_set][at_way*NUMBER_BITS +: NUMBER_BITS];
+    end
+
     always @(posedge clk)
         if (rst) begin
             used   <= 0;
@@ -189,9 +196,4 @@ module cache_tags #(
     always @(posedge clk)
         if (look_up && (!hit || (replacement == `VODR_REPLACEMENT_LRU && order[set][way*WAY_BITS +: WAY_BITS] != 0)))
             order[set] <= newest(order[set], way, ~hit & ~replaces);
-
-    // ---- what a place holds ----
-
-    assign victim = tags[set][way*NUMBER_BITS +: NUMBER_BITS];
-    assign held   = tags[place_set][place_way*NUMBER_BITS +: NUMBER_BITS];
 endmodule

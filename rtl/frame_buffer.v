@@ -1,14 +1,14 @@
-// frame_buffer.v - the memory bus behind the pixel cache (the frame buffer of Figure 2; docs/timing.md, section 8): serves
-// one transaction at a time, fills before writes before loads, and hands on what memory answers when it comes.
+// frame_buffer.v - the memory bus behind the pixel cache (the frame buffer of Figure 2; docs/timing.md, section 8):
+// serves one transaction at a time, fills before writes before loads, and hands on what memory answers when it comes.
 //
 //   port     way  what it is
 //   fill     in   strobe: a line is wanted
 //   filled   out  strobe: it came; lines come in the order in which they were wanted
-//   write    in   strobe: a line, or a pixel that is written through, with its data. One line at a time waits, WRITE_FIFO
-//                 pixels do
+//   write    in   strobe: a line, or a pixel that is written through, with its data. One line at a time waits, or
+//                 WRITE_FIFO pixels do
 //   written  out  strobe: the oldest write has the bus
-//   load     in   link: so many bytes of a brick are wanted; out: its ready, the strobe that its last burst has the bus, its
-//                 data, a beat at a time
+//   load     in   link: so many bytes of a brick are wanted; out: its ready, the strobe that its last burst has the
+//                 bus, its data, a beat at a time
 //   memory   out  to the memory itself: a beat is read or written at an address, the beat's first byte's; answers come
 //            in   latency - 2 cycles after what they answer is seen: mem_latency_cycles or dram_tcas_cycles, 3 or more
 //   report   out  status and idle
@@ -179,7 +179,7 @@ module frame_buffer #(
     reg  [47:0] rows [0:63];    // the row that each bank has open: its first address;
     reg  [63:0] open;           // whether it has one
     reg  [19:0] since_refresh;  // cycles since one began, or since the start
-    reg         refreshed;      // one began since the last grant
+    reg         refreshed;      // one began: the first does so after dram_refresh_cycles
     wire        refresh_begins = dram_refresh_cycles != 0 && since_refresh == dram_refresh_cycles - 20'd1;
     reg   [5:0] bank;
     wire [47:0] row_there      = rows[bank];
@@ -219,7 +219,8 @@ module frame_buffer #(
         end
     end
 
-    // A refresh closes all rows; nobody looks at them until the next grant.
+    // A refresh closes all rows; nobody looks at them until the next grant. The first grant after one began waits for
+    // its end, so that no other meets it.
     always @(posedge clk)
         if (rst) begin
             since_refresh <= 20'd0;
@@ -230,10 +231,8 @@ module frame_buffer #(
             if (refresh_begins) begin
                 refreshed <= 1'b1;
                 open      <= 64'd0;
-            end else if (grant) begin
-                refreshed  <= 1'b0;
+            end else if (grant)
                 open[bank] <= 1'b1;
-            end
             if (grant)
                 rows[bank] <= row;
         end
@@ -361,7 +360,8 @@ module frame_buffer #(
                                      - {{WRITE_BITS{1'b0}}, grant_write};
 
     always @(posedge clk) begin
-        report_idle   <= rst | ~(fills_after != 0 | writes_after != 0 | load_stays | left_after != 0 | flying_after != 0);
+        report_idle   <= rst | (fills_after == 0 & writes_after == 0 & ~load_stays & left_after == 0
+                                & flying_after == 0);
         report_status <= rst | left_now == 0 ? `STATUS_IDLE
                          : refresh_now != 0  ? `STATUS_STALLED_DRAM_REFRESH
                          : row_now != 0      ? `STATUS_STALLED_DRAM_ROW : `STATUS_BUSY;

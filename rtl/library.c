@@ -2,7 +2,9 @@
 
 #include <ctype.h>
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <inttypes.h>
+#include <spawn.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +12,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_ARGUMENTS = 40, MAX_PATH = 4096 };
+enum { MAX_ARGUMENTS = 40, MAX_PATH = 4096, NOT_RUN = 127 };
+
+extern char **environ;
 
 rtl_status rtl_fail(vodr_error *error, rtl_status status, const char *format, ...)
 {
@@ -87,24 +91,32 @@ static int add_parameters(char *text, const rtl_registers *registers, char **arg
 
 /* ---- building ---- */
 
-/* Runs the script; what it says lands in `said`, which is cut at the front when it is long. Returns its exit status. */
+/* Starts a program whose output and errors go to `out`. */
+static bool start(char *const *arguments, int out, pid_t *child)
+{
+    posix_spawn_file_actions_t actions;
+    if (posix_spawn_file_actions_init(&actions) != 0)
+        return false;
+    bool good = posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO) == 0 &&
+                posix_spawn_file_actions_adddup2(&actions, out, STDERR_FILENO) == 0 &&
+                posix_spawn(child, arguments[0], &actions, NULL, arguments, environ) == 0;
+    posix_spawn_file_actions_destroy(&actions);
+    return good;
+}
+
+/* Runs the script; what it says lands in `said`, which is cut at the front when it is long. Returns its exit status,
+ * NOT_RUN when it cannot be run. */
 static int run(char *const *arguments, char *said, size_t size)
 {
-    int ends[2];
+    int ends[2], status = 0;
     size_t length = 0;
+    pid_t child;
     if (pipe(ends) != 0)
-        return RTL_ENVIRONMENT;
-    pid_t child = fork();
-    if (child == 0) {
-        dup2(ends[1], STDOUT_FILENO);
-        dup2(ends[1], STDERR_FILENO);
-        close(ends[0]);
-        close(ends[1]);
-        execv(arguments[0], arguments);
-        _exit(127);
-    }
+        return NOT_RUN;
+    fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+    bool started = start(arguments, ends[1], &child);
     close(ends[1]);
-    for (ssize_t n; child > 0 && (n = read(ends[0], said + length, size - 1 - length)) > 0;) {
+    for (ssize_t n; started && (n = read(ends[0], said + length, size - 1 - length)) > 0;) {
         length += (size_t)n;
         if (length == size - 1) {
             memmove(said, said + size / 2, length - size / 2);
@@ -113,10 +125,7 @@ static int run(char *const *arguments, char *said, size_t size)
     }
     close(ends[0]);
     said[length] = '\0';
-    int status = -1;
-    if (child > 0)
-        waitpid(child, &status, 0);
-    return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : 127;
+    return started && waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : NOT_RUN;
 }
 
 static char *last_line(char *said)
@@ -151,7 +160,7 @@ static rtl_status build(const rtl_source *source, const char *module, const char
         snprintf(path, size, "%s", last);
         return RTL_OK;
     }
-    if (status == 127)
+    if (status == NOT_RUN)
         return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be run", script);
     return rtl_fail(error, status == 2 ? RTL_INVALID : RTL_ENVIRONMENT, "%s: %s", module, last);
 }

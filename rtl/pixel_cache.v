@@ -12,14 +12,13 @@
 //   *_idle   in   of the blocks that fragments come through: when all are idle, the flush begins
 //   report   out  status and idle
 //
-//   colour ─► door ─► cache_tags ─► queue ─► evict, fill, read ─► pixel      blended
-//              │ a blocking cache:              ▲ │      ▲    └► cache_blends ──┤
-//              └──────────────── hits ──────────┼─┼──────┤                      ▼
-//                                    filled ────┘ │    data  ◄──────────── pixels, dirty
-//                                                 └──► write buffer ─► write
+//   colour ─► door ─► cache_tags ─► cache_queue ─► evict ─► fill ─► read ─► pixel
+//              │    cache_touched                    │       ▲       ▲ └──► cache_blends
+//              └─── hits, when it is blocking ───────┼───────┼───────┤           │
+//                                                    │     filled  cache_lines ◄─┴─ blended ─► dirty, cache_places
+//                                                    └─► write buffer ─► write ◄──────────────────────────┘
 //
-// In a blocking cache the queue holds the one miss under way. In a non-blocking one it holds all that was looked up and
-// not read; misses have a queue of their own beside it, of the lines that they replace.
+// Here are the door, the stage behind it, the write buffer and the flush.
 `include "vodr_hw.vh"
 `include "status.vh"
 
@@ -60,7 +59,7 @@ module pixel_cache #(
     output reg                      [14:0] look_up_y,
 
     output reg                             pixel_valid,
-    output reg             [4*FB_BITS-1:0] pixel_rgba,
+    output                 [4*FB_BITS-1:0] pixel_rgba,
     input                                  blended_known,
     input                                  blended_known_writes,
     input                                  blended_valid,
@@ -75,7 +74,7 @@ module pixel_cache #(
     output reg                             write_valid,
     output reg                      [47:0] write_address,
     output reg                      [13:0] write_bytes,
-    output reg [4*FB_BITS*LINE_W*LINE_H-1:0] write_data,
+    output   [4*FB_BITS*LINE_W*LINE_H-1:0] write_data,
     input                                  written_valid,
 
     input                                  volume_divider_idle,
@@ -86,20 +85,16 @@ module pixel_cache #(
     output reg                             report_idle
 );
     localparam PIXEL       = 4 * FB_BITS;
-    localparam LINE        = PIXEL * LINE_W * LINE_H;
-    localparam LINES       = 8 * CACHE_BYTES / LINE;
+    localparam LINE_PIXELS = LINE_W * LINE_H;
+    localparam LINES       = 8 * CACHE_BYTES / (PIXEL * LINE_PIXELS);
     localparam PLACE_BITS  = LINES > 1 ? $clog2(LINES) : 1;
     localparam W_BITS      = $clog2(LINE_W);
     localparam H_BITS      = $clog2(LINE_H);
-    localparam NUMBER_BITS = 28 - W_BITS - H_BITS;             // a frame has up to 16384x16384 pixels
-    localparam BYTE_BITS   = $clog2(LINE / 8);
-    localparam [31:0] X_MASK = LINE_W - 1, Y_MASK = LINE_H - 1, BYTES = LINE / 8, PIXEL_BYTES = PIXEL / 8;
-
+    localparam NUMBER_BITS = 28 - W_BITS - H_BITS; // a frame has up to 16384x16384 pixels
     localparam DEPTH       = NONBLOCKING != 0 ? NONBLOCKING_FIFO : 1;
-    localparam DEPTH_BITS  = DEPTH > 1 ? $clog2(DEPTH) : 1;
     localparam MISSES      = NONBLOCKING != 0 ? NONBLOCKING_MISSES : 1;
-    localparam MISS_BITS   = MISSES > 1 ? $clog2(MISSES) : 1;
-    localparam [31:0] FULL = DEPTH, ALL_MISSES = MISSES, LAST_MISS = MISSES - 1;
+    localparam [31:0] X_MASK = LINE_W - 1, Y_MASK = LINE_H - 1, PIXEL_BYTES = PIXEL / 8,
+                      LINE_BYTES = PIXEL * LINE_PIXELS / 8;
 
     // ---- where a pixel lies ----
 
@@ -117,34 +112,22 @@ module pixel_cache #(
         end
     endfunction
 
-    // Where a pixel's bits begin in its line.
-    function [31:0] bit_of(input [29:0] pixel);
-        bit_of = (({17'b0, pixel[29:15]} & Y_MASK) << W_BITS | {17'b0, pixel[14:0]} & X_MASK) * PIXEL;
+    // Its index in its line.
+    function [9:0] offset_of(input [4:0] x, input [4:0] y);
+        offset_of = {5'b0, y & Y_MASK[4:0]} << W_BITS | {5'b0, x & X_MASK[4:0]};
     endfunction
 
-    function [47:0] address_of(input [NUMBER_BITS-1:0] number);
-        address_of = {{(48-NUMBER_BITS){1'b0}}, number} << BYTE_BITS;
-    endfunction
-
-    function [MISS_BITS-1:0] after(input [MISS_BITS-1:0] miss);
-        after = miss == LAST_MISS[MISS_BITS-1:0] ? 0 : miss + 1'b1;
+    function [47:0] address_of(input [NUMBER_BITS-1:0] number, input [9:0] offset);
+        address_of = ({{(48-NUMBER_BITS){1'b0}}, number} << (W_BITS + H_BITS) | {38'b0, offset}) << $clog2(PIXEL / 8);
     endfunction
 
     // ---- the door ----
 
-    reg                    door_valid, door_dead;
-    reg             [29:0] door_pixel;
-    wire                   arrives = colour_valid & colour_ready;
-    wire                   looks   = colour_gone & ~door_dead;
+    wire through = write_policy == `VODR_WRITE_POLICY_THROUGH;
+    wire arrives = colour_valid & colour_ready;
+    reg  door_valid, door_dead;
+    reg  [14:0] door_x, door_y;
     reg  [NUMBER_BITS-1:0] arriving;
-
-    wire                   arriving_hit, door_hit, replaces;
-    wire [NUMBER_BITS-1:0] door_line, victim, flush_line;
-    wire  [PLACE_BITS-1:0] at;
-    reg   [PLACE_BITS-1:0] flush_at;
-    wire                   misses = looks & ~door_hit;
-    wire                   touches;      // and its line is zeros
-    wire                   through = write_policy == `VODR_WRITE_POLICY_THROUGH;
 
     always @* begin
         arriving = 0;
@@ -152,126 +135,150 @@ module pixel_cache #(
             arriving = line_of(colour_x, colour_y, fb_layout == `VODR_FB_LAYOUT_TILED, lines_across);
     end
 
+    always @(posedge clk) begin
+        door_valid <= ~rst & (arrives | (door_valid & ~colour_gone));
+        if (arrives) begin
+            door_dead <= colour_dead;
+            door_x    <= colour_x;
+            door_y    <= colour_y;
+        end
+    end
+
+    // ---- the look-up ----
+
+    wire looks = colour_gone & ~door_dead;
+    wire arriving_hit, door_hit, replaces, touches; // touches: its line's first miss of the frame, which is zeros
+    wire [NUMBER_BITS-1:0] door_line, victim;
+    wire [PLACE_BITS-1:0] at;
+    wire misses = looks & ~door_hit;
+    wire hits   = looks & door_hit & NONBLOCKING == 0; // it is read in this cycle, too
+    wire flushes;
+    reg  [PLACE_BITS-1:0] flush_at;
+
     cache_tags #(
         .SETS(LINES / WAYS), .WAYS(WAYS), .NUMBER_BITS(NUMBER_BITS), .PLACE_BITS(PLACE_BITS)
-    ) directory (
-        .clk(clk), .rst(rst), .index(index), .replacement(replacement),
-        .arrives(arrives), .arriving(arriving), .arriving_hit(arriving_hit), .line(door_line), .hit(door_hit),
-        .look_up(looks), .at(at), .replaces(replaces), .victim(victim), .place(flush_at), .held(flush_line)
+    ) the_tags (
+        .clk(clk), .rst(rst), .index(index), .replacement(replacement), .arrives(arrives), .arriving(arriving),
+        .arriving_hit(arriving_hit), .line(door_line), .hit(door_hit), .look_up(looks), .flush(flushes),
+        .flush_at(flush_at), .at(at), .replaces(replaces), .victim(victim)
     );
 
     cache_touched #(
         .FRAME_LINES(FRAME_LINES), .NUMBER_BITS(NUMBER_BITS)
-    ) first_touch (
-        .clk(clk), .rst(rst), .clear_on_first_touch(clear_on_first_touch),
-        .misses(misses), .line(door_line), .first(touches)
+    ) the_touched (
+        .clk(clk), .rst(rst), .clear_on_first_touch(clear_on_first_touch), .misses(misses), .line(door_line),
+        .first(touches)
     );
 
     always @(posedge clk) begin
-        door_valid <= ~rst & (arrives | (door_valid & ~colour_gone));
-        if (arrives) begin
-            door_dead  <= colour_dead;
-            door_pixel <= {colour_y, colour_x};
-        end
         look_up_valid    <= looks & ~rst;
         look_up_miss     <= misses;
         look_up_replaced <= misses & replaces;
-        {look_up_y, look_up_x} <= door_pixel;
+        look_up_x        <= door_x;
+        look_up_y        <= door_y;
     end
 
-    // ---- looked up and not read: the queue, and what misses replace ----
+    // ---- the fragment that is at the door in the next cycle ----
 
-    reg [PLACE_BITS+32:0] queue [0:(1<<DEPTH_BITS)-1];
-    reg  [DEPTH_BITS-1:0] first, last;  // the oldest, and where the next goes
-    reg    [DEPTH_BITS:0] count;
-    wire                  pushes = looks & (NONBLOCKING != 0 | ~door_hit);
-    reg                   pops;         // its pixel is read
-    reg                   evicted;      // the line that the oldest replaces is out of the way
+    wire next_valid = arrives | (door_valid & ~colour_gone);
+    wire next_alive = arrives ? ~colour_dead : door_valid & ~colour_gone & ~door_dead;
+    wire next_miss  = next_alive & ~(arrives ? arriving_hit : door_hit);
+    wire [29:0] next_pixel = arrives ? {colour_y, colour_x} : {door_y, door_x};
+    wire [NUMBER_BITS-1:0] next_line = arrives ? arriving : door_line;
 
-    wire                  front_misses, front_fills, front_replaces;
+    // ---- looked up and not read ----
+
+    reg  evicted;                // what the oldest access replaces is out of the way
+    reg  passes, moves, pops;    // in this cycle: nothing is in the way, the line moves to the write buffer; it is read
+    wire waits, front_misses, front_fills, front_replaces, wants, full, misses_full, leaving;
+    wire [29:0] front_pixel;
     wire [PLACE_BITS-1:0] front_at;
-    wire           [29:0] front_pixel;
-    assign {front_misses, front_fills, front_replaces, front_at, front_pixel} = queue[first];
-    wire                  waiting    = count != 0;
-    wire   [DEPTH_BITS:0] count_next = count + {{DEPTH_BITS{1'b0}}, pushes} - {{DEPTH_BITS{1'b0}}, pops};
+    wire [NUMBER_BITS-1:0] missed_line, front_victim;
 
-    reg [NUMBER_BITS-1:0] victims [0:MISSES-1];
-    reg      [MISSES-1:0] leaving;      // the miss replaces that line, which is not yet out of the way
-    reg   [MISS_BITS-1:0] first_miss, last_miss;
-    reg     [MISS_BITS:0] miss_count;
-    wire                  miss_pops = pops & front_misses;
-    wire    [MISS_BITS:0] miss_count_next = miss_count + {{MISS_BITS{1'b0}}, misses} - {{MISS_BITS{1'b0}}, miss_pops};
-    reg [NUMBER_BITS-1:0] missed_line;  // of the last miss
-    reg                   wanted;       // in the cycle after its look-up
+    cache_queue #(
+        .DEPTH(DEPTH), .MISSES(MISSES), .NUMBER_BITS(NUMBER_BITS), .PLACE_BITS(PLACE_BITS), .PIXEL_BITS(30)
+    ) the_queue (
+        .clk(clk), .rst(rst), .push(looks & ~hits), .push_misses(misses), .push_fills(misses & ~touches),
+        .push_replaces(replaces), .push_victim(victim), .push_line(door_line), .push_at(at),
+        .push_pixel({door_y, door_x}), .wants(wants), .line(missed_line), .waits(waits), .front_misses(front_misses),
+        .front_fills(front_fills), .front_replaces(front_replaces), .front_at(front_at), .front_pixel(front_pixel),
+        .victim(front_victim), .clears(passes | moves), .clears_clean(passes), .pops(pops), .full(full),
+        .misses_full(misses_full), .ask(NONBLOCKING != 0 & next_miss), .asked(next_line), .leaving(leaving)
+    );
+
+    // ---- pixels that are being blended ----
+
+    wire reads = pops | hits;
+    wire blends, hazard, done_replaced;
+    /* verilator lint_off UNUSEDSIGNAL */ // where it lies in its line is enough
+    wire [29:0] done_pixel;
+    /* verilator lint_on UNUSEDSIGNAL */
+    wire [PLACE_BITS-1:0] known_at, done_at;
+
+    // A blocking cache looks for hazards at the door, a non-blocking one before the read.
+    cache_blends #(
+        .BLEND_CYCLES(BLEND_CYCLES), .PIXEL_BITS(30), .PLACE_BITS(PLACE_BITS), .NEXT(NONBLOCKING == 0)
+    ) the_blends (
+        .clk(clk), .rst(rst), .read(reads), .read_pixel(hits ? {door_y, door_x} : front_pixel),
+        .read_at(hits ? at : front_at), .known_at(known_at), .done_pixel(done_pixel), .done_at(done_at),
+        .done_replaced(done_replaced), .install(pops & front_misses & through), .install_at(front_at), .any(blends),
+        .ask(NONBLOCKING != 0 ? waits & ~evicted : next_alive & ~full),
+        .asked(NONBLOCKING != 0 ? front_pixel : next_pixel), .hazard(hazard)
+    );
+
+    // ---- written through: each access has a place of the write FIFO ----
+
+    reg  settled, settled_writes; // a blend was over in the cycle before
+    reg  [9:0] settled_offset;
+    reg  [PIXEL-1:0] settled_rgba;
+    wire settles = settled & settled_writes;
+    wire no_place, unsettled;
+    wire [NUMBER_BITS-1:0] settled_line;
 
     always @(posedge clk)
-        if (rst) begin
-            first      <= 0;
-            last       <= 0;
-            count      <= 0;
-            first_miss <= 0;
-            last_miss  <= 0;
-            miss_count <= 0;
-            leaving    <= 0;
-            evicted    <= 1'b0;
-            wanted     <= 1'b0;
-        end else begin
-            count      <= count_next;
-            miss_count <= miss_count_next;
-            wanted     <= misses & ~touches;
-            evicted    <= ~pops & (evicted | passes | moves);
-            if (pushes) begin
-                queue[last] <= {misses, misses & ~touches, replaces, at, door_pixel};
-                last        <= last + 1'b1;
-            end
-            if (misses) begin
-                victims[last_miss] <= victim;
-                missed_line        <= door_line;
-                last_miss          <= after(last_miss);
-            end
-            if (pops)
-                first <= first + 1'b1;
-            if (miss_pops)
-                first_miss <= after(first_miss);
-            if (front_misses & (passes | moves))
-                leaving[first_miss] <= 1'b0;
-            if (misses)
-                leaving[last_miss] <= replaces;
+        if (rst)
+            settled <= 1'b0;
+        else if (through) begin
+            settled        <= blended_valid;
+            settled_writes <= blended_writes;
+            settled_offset <= offset_of(done_pixel[4:0], done_pixel[19:15]);
+            settled_rgba   <= blended_rgba;
         end
+
+    cache_places #(
+        .WRITE_FIFO(WRITE_FIFO), .NUMBER_BITS(NUMBER_BITS), .OWN(NONBLOCKING == 0)
+    ) the_places (
+        .clk(clk), .rst(rst), .through(through), .take(looks), .take_line(door_line), .settle(settled),
+        .settle_writes(settled_writes), .settle_line(settled_line), .granted(written_valid), .full(no_place),
+        .ask(NONBLOCKING != 0 ? next_miss : waits & ~evicted), .asked(NONBLOCKING != 0 ? next_line : missed_line),
+        .unsettled(unsettled)
+    );
 
     // ---- evict, fill, read ----
 
-    wire                  blends;       // some pixel is being blended
-    wire [PLACE_BITS-1:0] known_at;
-    reg       [LINES-1:0] dirty;
-    wire                  soils   = blended_known & blended_known_writes & ~through;
-    wire                  dirties = front_replaces & (dirty[front_at] | (soils & known_at == front_at));
-    reg                   just_read;
-    wire                  hazard;       // the pixel asked for is being blended
-
-    reg                   write_pending; // the write buffer holds write_line
-    reg [NUMBER_BITS-1:0] write_line;
-    wire                  pending = write_pending & ~written_valid;
-    wire                  may_move = ~pending & ~blends;
-
-    wire                  unsettled;    // an access to the line asked for has a place of the write FIFO
-    reg     [MISS_BITS:0] fill_count;
-    reg                   passes, moves; // the replaced line is out of the way, or moves there
-    reg             [3:0] status;
+    reg  write_pending; // the write buffer holds write_line
+    reg  [NUMBER_BITS-1:0] write_line;
+    reg  [LINES-1:0] dirty;
+    reg  just_read;
+    reg  [3:0] status;
+    wire pending = write_pending & ~written_valid;
+    wire soils   = blended_known & blended_known_writes & ~through;
+    wire evicts  = front_replaces & (dirty[front_at] | (soils & known_at == front_at));
+    wire came;
 
     always @* begin
         {passes, moves, pops} = 3'b0;
         status = `STATUS_IDLE;
-        if (waiting) begin
+        if (waits) begin
             if (!evicted) begin
                 if (NONBLOCKING != 0 && front_misses && just_read)
-                    status = `STATUS_IDLE;  // whether that pixel is written is not known yet
+                    status = `STATUS_IDLE; // whether that pixel is written is not known yet
                 else if (NONBLOCKING != 0 && hazard)
                     status = `STATUS_STALLED_HAZARD;
-                else if (dirties) begin
-                    moves  = may_move;
+                else if (evicts) begin
+                    moves  = ~pending & ~blends;
                     status = moves && NONBLOCKING == 0 ? `STATUS_STALLED_FILL : `STATUS_STALLED_WRITE_BACK;
-                end else if (NONBLOCKING == 0 && front_fills && ((pending && write_line == missed_line) || unsettled))
+                end else if (NONBLOCKING == 0 && (unsettled || (pending && write_line == missed_line)))
                     status = `STATUS_STALLED_WRITE_BACK;
                 else begin
                     passes = 1'b1;
@@ -279,72 +286,39 @@ module pixel_cache #(
                 end
             end
             if (evicted || (passes && NONBLOCKING != 0)) begin
-                pops   = ~front_fills | fill_count != 0;
+                pops   = ~front_fills | came;
                 status = pops ? `STATUS_BUSY : `STATUS_STALLED_FILL;
             end
         end
     end
 
-    wire                  hits    = looks & door_hit & NONBLOCKING == 0;
-    wire                  reads   = pops | hits;
-    wire           [29:0] read_pixel = hits ? door_pixel : front_pixel;
-
     always @(posedge clk) begin
+        evicted       <= ~rst & ~pops & (evicted | passes | moves);
         just_read     <= reads;
+        pixel_valid   <= ~rst & reads;
+        fill_valid    <= ~rst & (NONBLOCKING != 0 ? wants : front_fills & (passes | moves));
+        fill_address  <= address_of(missed_line, 10'b0);
         report_status <= rst ? `STATUS_IDLE : hits ? `STATUS_BUSY : status;
     end
 
-    // ---- lines ----
+    cache_lines #(
+        .PIXEL(PIXEL), .LINE_PIXELS(LINE_PIXELS), .LINES(LINES), .PLACE_BITS(PLACE_BITS), .MISSES(MISSES)
+    ) the_lines (
+        .clk(clk), .rst(rst), .filled_valid(filled_valid), .filled_data(filled_data), .came(came),
+        .install(pops & front_misses), .zeros(~front_fills), .read(reads), .at(hits | flushes ? at : front_at),
+        .offset(hits ? offset_of(door_x[4:0], door_y[4:0]) : offset_of(front_pixel[4:0], front_pixel[19:15])),
+        .pixel(pixel_rgba), .move(moves | flushes), .settle(settles), .settle_pixel(settled_rgba),
+        .leaving(write_data), .write(blended_valid & blended_writes & ~done_replaced), .write_at(done_at),
+        .write_offset(offset_of(done_pixel[4:0], done_pixel[19:15])), .write_pixel(blended_rgba)
+    );
 
-    reg        [LINE-1:0] data   [0:LINES-1];
-    reg        [LINE-1:0] filled [0:MISSES-1];  // lines that came and wait for their miss's turn
-    reg   [MISS_BITS-1:0] fill_first, fill_last;
-    wire                  fill_pops = pops & front_fills;
-    wire           [29:0] done_pixel;
-    wire                  done_replaced;
-    wire [PLACE_BITS-1:0] done_at;
-    wire [PLACE_BITS-1:0] read_at = flushes ? flush_at : hits ? at : front_at;
+    // ---- the flush, and what leaves ----
 
-    always @(posedge clk) begin
-        pixel_valid <= reads & ~rst;
-        if (blended_valid & blended_writes & ~done_replaced)
-            data[done_at][bit_of(done_pixel) +: PIXEL] <= blended_rgba;
-        if (miss_pops)
-            data[front_at] <= front_fills ? filled[fill_first] : 0;
-        if (miss_pops)
-            pixel_rgba <= front_fills ? filled[fill_first][bit_of(read_pixel) +: PIXEL] : 0;
-        else if (reads)
-            pixel_rgba <= data[read_at][bit_of(read_pixel) +: PIXEL];
-    end
+    wire empty = ~next_valid & ~waits & ~looks & ~blends
+                 & volume_divider_idle & slice_generator_idle & rasterizer_idle & texture_unit_idle;
+    wire [NUMBER_BITS-1:0] moved_line = flushes ? victim : front_victim;
 
-    always @(posedge clk)
-        if (rst) begin
-            fill_first <= 0;
-            fill_last  <= 0;
-            fill_count <= 0;
-        end else begin
-            fill_count <= fill_count + {{MISS_BITS{1'b0}}, filled_valid} - {{MISS_BITS{1'b0}}, fill_pops};
-            if (filled_valid) begin
-                filled[fill_last] <= filled_data;
-                fill_last         <= after(fill_last);
-            end
-            if (fill_pops)
-                fill_first <= after(fill_first);
-        end
-
-    always @(posedge clk) begin
-        fill_valid   <= ~rst & (NONBLOCKING != 0 ? wanted : (passes | moves) & front_fills);
-        fill_address <= address_of(missed_line);
-    end
-
-    // ---- the write buffer, and the flush ----
-
-    wire empty   = ~(door_valid & ~colour_gone) & ~arrives & count_next == 0 & ~reads & ~blends
-                   & volume_divider_idle & slice_generator_idle & rasterizer_idle & texture_unit_idle;
-    wire flushes = empty & ~pending & |dirty;
-    wire [NUMBER_BITS-1:0] moved_line = flushes ? flush_line : victims[first_miss];
-
-    // Sets, and ways in a set, in their order.
+    // By set, in a set by way.
     function [PLACE_BITS-1:0] first_of(input [LINES-1:0] places);
         integer p;
         begin
@@ -355,27 +329,12 @@ module pixel_cache #(
         end
     endfunction
 
+    assign flushes = empty & ~pending & |dirty;
+
     always @* begin
         flush_at = 0;
         if (flushes)
             flush_at = first_of(dirty);
-    end
-
-    always @(posedge clk) begin
-        write_valid   <= ~rst & (moves | flushes | settles);
-        write_pending <= ~rst & (moves | flushes | pending);
-        report_idle   <= ~rst & empty & ~|dirty & ~settles;
-        if (moves | flushes) begin
-            write_line    <= moved_line;
-            write_address <= address_of(moved_line);
-            write_bytes   <= BYTES[13:0];
-            write_data    <= data[read_at];
-        end
-        if (settles) begin
-            write_address          <= address_of(settled_line) + {16'b0, bit_of(settled_pixel)} / 8;
-            write_bytes            <= PIXEL_BYTES[13:0];
-            write_data[PIXEL-1:0]  <= settled_rgba;
-        end
     end
 
     always @(posedge clk)
@@ -385,78 +344,29 @@ module pixel_cache #(
             if (soils)
                 dirty[known_at] <= 1'b1;
             if (moves | flushes)
-                dirty[read_at] <= 1'b0;
+                dirty[flushes ? flush_at : front_at] <= 1'b0;
         end
 
-    // ---- written through ----
-
-    reg                    settled, settled_writes; // a blend was over in the cycle before
-    reg        [PIXEL-1:0] settled_rgba;
-    reg             [29:0] settled_pixel;
-    wire [NUMBER_BITS-1:0] settled_line;
-    wire                   settles = settled & settled_writes;
-    wire                   full;                    // there is no place in the next cycle
-
-    always @(posedge clk)
-        if (rst)
-            settled <= 1'b0;
-        else if (through) begin
-            settled        <= blended_valid;
-            settled_writes <= blended_writes;
-            settled_rgba   <= blended_rgba;
-            settled_pixel  <= done_pixel;
+    always @(posedge clk) begin
+        write_valid   <= ~rst & (moves | flushes | settles);
+        write_pending <= ~rst & (moves | flushes | pending);
+        report_idle   <= ~rst & empty & ~|dirty & ~settles;
+        if (moves | flushes) begin
+            write_line    <= moved_line;
+            write_address <= address_of(moved_line, 10'b0);
+            write_bytes   <= LINE_BYTES[13:0];
         end
-
-    cache_places #(
-        .WRITE_FIFO(WRITE_FIFO), .NUMBER_BITS(NUMBER_BITS), .OWN(NONBLOCKING == 0)
-    ) places (
-        .clk(clk), .rst(rst), .through(through), .take(looks), .take_line(door_line),
-        .settle(settled), .settle_writes(settled_writes), .settle_line(settled_line), .granted(written_valid),
-        .full(full), .ask(NONBLOCKING != 0 ? next_alive & ~next_hit : waiting & ~evicted),
-        .asked(NONBLOCKING != 0 ? next_line : missed_line), .unsettled(unsettled)
-    );
-
-    // ---- blends ----
-
-    wire           [29:0] next_pixel = arrives ? {colour_y, colour_x} : door_pixel;
-    wire                  next_alive = arrives ? ~colour_dead : door_valid & ~colour_gone & ~door_dead;
-
-    cache_blends #(
-        .BLEND_CYCLES(BLEND_CYCLES), .PIXEL_BITS(30), .PLACE_BITS(PLACE_BITS), .NEXT(NONBLOCKING == 0)
-    ) blending (
-        .clk(clk), .rst(rst), .read(reads), .read_pixel(read_pixel), .read_at(read_at),
-        .known_at(known_at), .done_pixel(done_pixel), .done_at(done_at),
-        .done_replaced(done_replaced), .any(blends), .install(miss_pops & through), .install_at(front_at),
-        .ask(NONBLOCKING != 0 ? waiting & ~evicted : next_alive & count_next == 0),
-        .asked(NONBLOCKING != 0 ? front_pixel : next_pixel), .hazard(hazard)
-    );
-
-    // ---- whether the fragment at the door goes in the next cycle ----
-
-    wire                   next_valid = arrives | (door_valid & ~colour_gone);
-    wire                   next_hit   = arrives ? arriving_hit : door_hit;
-    wire [NUMBER_BITS-1:0] next_line  = arrives ? arriving : door_line;
-    reg                    blocked;
-    integer m;
-
-    always @* begin
-        m       = 0;
-        blocked = 1'b0;
-        if (NONBLOCKING == 0)
-            blocked = count_next != 0 | (next_alive & full);
-        else if (next_alive) begin
-            blocked = count_next == FULL[DEPTH_BITS:0] | full;
-            if (!next_hit && !blocked) begin
-                blocked = miss_count_next == ALL_MISSES[MISS_BITS:0]
-                          | (pending & write_line == next_line) | unsettled
-                          | (misses & replaces & victim == next_line);
-                for (m = 0; m < MISSES; m = m + 1)
-                    if (leaving[m] && victims[m] == next_line && !(passes && front_misses && m[MISS_BITS-1:0] == first_miss))
-                        blocked = 1'b1;
-            end
+        if (settles) begin
+            write_address <= address_of(settled_line, settled_offset);
+            write_bytes   <= PIXEL_BYTES[13:0];
         end
     end
 
+    // ---- whether the fragment at the door goes in the next cycle ----
+
+    wire in_use    = pending & write_line == next_line; // what memory holds of its line is old
+    wire blocked   = NONBLOCKING == 0 ? full | (next_alive & no_place)
+                     : (next_alive & (full | no_place)) | (next_miss & (misses_full | leaving | unsettled | in_use));
     wire hazardous = NONBLOCKING == 0 & next_alive & ~blocked & hazard;
 
     always @(posedge clk) begin

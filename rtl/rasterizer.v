@@ -1,9 +1,9 @@
-// rasterizer.v - the fragments of a slice: runs of pixels, row by row from the top, left to right (Figure 2 of the paper;
-// docs/architecture.md, section 3; docs/timing.md, section 5).
+// rasterizer.v - the fragments of a slice: runs of pixels, row by row from the top, left to right (Figure 2 of the
+// paper; docs/architecture.md, section 3; docs/timing.md, section 5).
 //
 //   port      way  what it is
-//   slice     in   link: a slice's plane, the brick's borders as limits of its numerators, its bound on the screen; last: of
-//                  its visit
+//   slice     in   link: a slice's plane, the brick's borders as limits of its numerators, its bound on the screen;
+//                  last: of its visit
 //   fragment  out  link: a pixel, and the numerators of its position; strobe visit_done: the visit's last row was gone
 //                  through; in: ready, and loading: it is not because the brick is not loaded
 //   report    out  status and idle
@@ -60,7 +60,7 @@ module rasterizer (
     wire rastering = !slice_ready; // row fragment_y is at hand; it has fragments if one is offered
     wire accepted = fragment_valid && fragment_ready;
     wire pop = slice_ready && slice_valid;
-    wire row_done = rastering && (fragment_valid ? accepted && fragment_x + 15'd1 == x_end : 1'b1);
+    wire row_done = rastering && (!fragment_valid || (accepted && fragment_x + 15'd1 == x_end));
 
     always @(posedge clk)
         if (rst || !(rastering || slice_valid))
@@ -118,9 +118,12 @@ module rasterizer (
             end
             run = pop ? {slice_x1, slice_x0} : {x1, x0};
             if (rows[14:0] < rows[29:15]) begin
-                run = narrow(run, a_x, pop ? slice_step_u_x : step_u_x, pop ? slice_lo_x : lo_x, pop ? slice_hi_x : hi_x);
-                run = narrow(run, a_y, pop ? slice_step_u_y : step_u_y, pop ? slice_lo_y : lo_y, pop ? slice_hi_y : hi_y);
-                run = narrow(run, a_z, pop ? slice_step_u_z : step_u_z, pop ? slice_lo_z : lo_z, pop ? slice_hi_z : hi_z);
+                run = narrow(run, a_x, pop ? slice_step_u_x : step_u_x,
+                             pop ? slice_lo_x : lo_x, pop ? slice_hi_x : hi_x);
+                run = narrow(run, a_y, pop ? slice_step_u_y : step_u_y,
+                             pop ? slice_lo_y : lo_y, pop ? slice_hi_y : hi_y);
+                run = narrow(run, a_z, pop ? slice_step_u_z : step_u_z,
+                             pop ? slice_lo_z : lo_z, pop ? slice_hi_z : hi_z);
                 fragment_valid <= run[14:0] < run[29:15];
                 fragment_visit_done <= 1'b0;
                 {slice_ready, report_idle} <= 2'b00;

@@ -33,8 +33,8 @@ function [63:0] slice_step(input in_perspective, input [23:0] slice_z, input [63
         slice_step = axis_step;
 endfunction
 
-// The numerator at which a position reaches a border between voxels, from base and shift: position >= voxel exactly when
-// A >= border_of().
+// The numerator at which a position reaches a border between voxels, from base and shift: position >= voxel exactly
+// when A >= border_of().
 function [63:0] border_of(input [15:0] voxel, input [63:0] axis_base, input [4:0] scale);
     border_of = ({24'd0, voxel, 24'd0} - axis_base) << scale;
 endfunction

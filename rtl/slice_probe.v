@@ -2,7 +2,7 @@
 // of volume_divider.
 //
 //   begins            the candidate is known: the box lo_*, hi_*, its bound x0 .. k1
-//   shift_in          twice then: slices move up, and the first is at hand in the next cycle
+//   shift_in          up for two cycles then: slices move up, and the first is at hand
 //   probing           a row is looked at
 //   found, exhausted  it has a fragment; it has none, and no row is left
 //   under             the nearest slice comes first
@@ -101,8 +101,12 @@ module slice_probe (
             if (step_u_z == 64'sd0)
                 rows = narrow(rows, a_z, v_z, least_z, limit_z);
             next_rows <= rows;
-            {next_a_x, next_a_y, next_a_z} <= {a_x, a_y, a_z};
-            {next_v_x, next_v_y, next_v_z} <= {v_x, v_y, v_z};
+            next_a_x <= a_x;
+            next_a_y <= a_y;
+            next_a_z <= a_z;
+            next_v_x <= v_x;
+            next_v_y <= v_y;
+            next_v_z <= v_z;
             next_u_x <= slice_step(perspective, z, step_u_x);
             next_u_y <= slice_step(perspective, z, step_u_y);
             next_u_z <= slice_step(perspective, z, step_u_z);
@@ -120,8 +124,12 @@ module slice_probe (
     always @(posedge clk)
         if (moves) begin
             {rows_end, row} <= next_rows;
-            {u_x, u_y, u_z} <= {next_u_x, next_u_y, next_u_z};
-            {v_x, v_y, v_z} <= {next_v_x, next_v_y, next_v_z};
+            u_x <= next_u_x;
+            u_y <= next_u_y;
+            u_z <= next_u_z;
+            v_x <= next_v_x;
+            v_y <= next_v_y;
+            v_z <= next_v_z;
             a_x <= next_a_x + next_v_x * $signed({49'd0, next_rows[14:0]});
             a_y <= next_a_y + next_v_y * $signed({49'd0, next_rows[14:0]});
             a_z <= next_a_z + next_v_z * $signed({49'd0, next_rows[14:0]});

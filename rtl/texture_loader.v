@@ -5,8 +5,8 @@
 //   visit_done                       strobe: the rasterizer has gone through the oldest visit that is not drawn
 //   load_*                           link to the frame buffer: a brick is wanted; its answers, and the brick's bytes
 //   there_next                       from the next cycle on the visit that is drawn has its brick
-//   buffer, origin_*, row, plane     of the visit that is drawn: its buffer; the first voxel that lies there, the
-//                                    voxels of a row, of a plane
+//   buffer, origin_*, row, plane     of the visit that is drawn: its buffer; the first voxel that lies there; bytes of
+//                                    a row of voxels, of a plane
 //   write, write_word, write_data    to texture memory: a word of a buffer
 //
 //   brick --> +------------------+  a brick that   +------------------+   +-----------+
@@ -20,60 +20,63 @@
 //             | visit_buffer[8]  |--> buffer       loaded visit != drawn visit --> there_next
 //             +------------------+
 //
-// Visits, and the loads among them, have numbers modulo 16; at most 8 are known and not drawn. A buffer is asked for again only when all
-// visits that used it are drawn, so that what is kept of a brick (its size, where it begins) is kept by buffer.
-`include "vodr_hw.vh"
-
+// Visits, and the loads among them, have numbers modulo 16; at most 8 are known and not drawn. A buffer is asked for
+// again only when all visits that used it are drawn, so what is known of a brick's size and place is kept by buffer.
 module texture_loader #(
     parameter DENSITY_BYTES = 1,
     parameter BEAT_BYTES    = 16, // of a brick in a beat
     parameter WORD_BYTES    = 16, // BEAT_BYTES, or 2 where they are 1 and a density has two
     parameter BUFFER_BITS   = 13  // of a word's number in a buffer
 ) (
-    input                         clk,
-    input                         rst,
-    input                         brick_fresh,
-    input [47:0]                  brick_number,
-    input [15:0]                  brick_lo_x, brick_lo_y, brick_lo_z,
-    input [15:0]                  brick_hi_x, brick_hi_y, brick_hi_z,
-    input                         visit_done,
-    input                         load_ready,
-    input                         load_granted,
-    input                         load_data_valid,
-    input [8:0]                   load_data_bytes,
-    input [8*BEAT_BYTES-1:0]      load_data,
-    input                         whole,
-    input                         border,
-    input                         double_buffer,
-    input [15:0]                  dim_x, dim_y, dim_z,
-    input [47:0]                  texture_base,
-    input [47:0]                  brick_room_bytes,
-    output reg                    load_valid,
-    output reg [47:0]             load_address,
-    output reg [31:0]             load_bytes,
-    output                        there_next,
-    output                        buffer,
-    output [15:0]                 origin_x, origin_y, origin_z,
-    output [31:0]                 row_bytes, plane_bytes,
-    output                        write,
-    output                        write_buffer,
-    output [BUFFER_BITS-1:0]        write_word,
-    output [8*WORD_BYTES-1:0]     write_data
+    input                     clk,
+    input                     rst,
+
+    input                     whole,
+    input                     border, // a voxel on each side, for the filter
+    input                     double_buffer,
+    input              [15:0] dim_x, dim_y, dim_z,
+    input              [47:0] texture_base,
+    input              [47:0] brick_room_bytes,
+
+    input                     brick_fresh,
+    input              [47:0] brick_number,
+    input              [15:0] brick_lo_x, brick_lo_y, brick_lo_z,
+    input              [15:0] brick_hi_x, brick_hi_y, brick_hi_z,
+    input                     visit_done,
+
+    output reg                load_valid,
+    output reg         [47:0] load_address,
+    output reg         [31:0] load_bytes,
+    input                     load_ready,
+    input                     load_granted,
+    input                     load_data_valid,
+    input               [8:0] load_data_bytes,
+    input  [8*BEAT_BYTES-1:0] load_data,
+
+    output                    there_next,
+    output                    buffer,
+    output             [15:0] origin_x, origin_y, origin_z,
+    output             [31:0] row_bytes, plane_bytes,
+
+    output                    write,
+    output                    write_buffer,
+    output  [BUFFER_BITS-1:0] write_word,
+    output [8*WORD_BYTES-1:0] write_data
 );
     // ---- visits: by number, the buffer that has the brick or will take it ----
 
-    reg [3:0]   known, drawn;      // visits that came; that were drawn
-    reg         visit_buffer [0:7];
-    reg [47:0]  held_0, held_1;    // bricks that buffers hold or will, once all visits are loaded
-    reg [1:0]   holds;             // whether they do
-    reg         last_buffer;       // of the visit that came last
+    reg [3:0]  known, drawn;   // visits that came; that were drawn
+    reg        visit_buffer [0:7];
+    reg [47:0] held_0, held_1; // bricks that buffers hold or will, once all visits are loaded
+    reg [1:0]  holds;          // whether they do
+    reg        last_buffer;    // of the visit that came last
 
-    wire [3:0]   known_next = known + {3'd0, brick_fresh};
-    wire [3:0]   drawn_next = drawn + {3'd0, visit_done};
-    wire         in_0       = holds[0] && held_0 == brick_number;
-    wire         in_1       = holds[1] && held_1 == brick_number;
-    wire         to_load    = brick_fresh && !whole && !in_0 && !in_1;
-    wire         new_buffer = in_0 ? 1'b0 : in_1 ? 1'b1 : double_buffer && !last_buffer;
+    wire [3:0] known_next = known + {3'd0, brick_fresh};
+    wire [3:0] drawn_next = drawn + {3'd0, visit_done};
+    wire       in_0       = holds[0] && held_0 == brick_number;
+    wire       in_1       = holds[1] && held_1 == brick_number;
+    wire       to_load    = brick_fresh && !whole && !in_0 && !in_1;
+    wire       new_buffer = in_0 ? 1'b0 : in_1 ? 1'b1 : double_buffer && !last_buffer;
 
     assign buffer = visit_buffer[drawn[2:0]];
 
@@ -102,14 +105,14 @@ module texture_loader #(
 
     // ---- loads: by number, what is loaded into which buffer, for which visit ----
 
-    reg [3:0]   load_visit [0:7];
-    reg         load_buffer [0:7];
-    reg [47:0]  load_number [0:7];
-    reg [47:0]  load_lo [0:7];
-    reg [47:0]  load_hi [0:7];
-    reg [3:0]   loads_known, loads_asked, loads_loaded; // that came; granted in full; with all data
+    reg [3:0]  load_visit [0:7];
+    reg        load_buffer [0:7];
+    reg [47:0] load_number [0:7];
+    reg [47:0] load_lo [0:7];
+    reg [47:0] load_hi [0:7];
+    reg [3:0]  loads_known, loads_asked, loads_loaded; // that came; granted in full; with all data
 
-    wire       finished;                              // a brick's last data
+    wire       finished;                               // a brick's last data
     wire [3:0] loads_known_next  = loads_known + {3'd0, to_load};
     wire [3:0] loads_asked_next  = loads_asked + {3'd0, load_granted};
     wire [3:0] loads_loaded_next = loads_loaded + {3'd0, finished};
@@ -141,7 +144,7 @@ module texture_loader #(
 
     // ---- request: of the first load that was not asked for, once its buffer's visits are drawn ----
 
-    reg          under_way; // asked for, and not granted in full
+    reg         under_way; // asked for, and not granted in full
     wire        now_comes  = loads_asked_next == loads_known;
     wire [3:0]  ask_visit  = now_comes ? known : load_visit[loads_asked_next[2:0]];
     wire        ask_buffer = now_comes ? new_buffer : load_buffer[loads_asked_next[2:0]];
@@ -218,10 +221,10 @@ module texture_loader #(
             region_bytes[ask_buffer] <= ask_bytes;
         end
 
-    assign origin_x = region_x[buffer];
-    assign origin_y = region_y[buffer];
-    assign origin_z = region_z[buffer];
-    assign row_bytes = region_row[buffer];
+    assign origin_x    = region_x[buffer];
+    assign origin_y    = region_y[buffer];
+    assign origin_z    = region_z[buffer];
+    assign row_bytes   = region_row[buffer];
     assign plane_bytes = region_plane[buffer];
 
     // ---- data: a brick's bytes in order, a word a beat ----

@@ -1,33 +1,35 @@
 // texture_unit.v - the 3D texture mapping unit: address, fetch, filter, classify, and the FIFO before the alpha blender
 // (Figure 2 of the paper; docs/architecture.md, section 6; docs/timing.md, section 6; docs/blocks/texture_unit.md).
 //
-//   port        from, to                  what it is
-//   brick_*     volume divider            strobe `fresh`: a visit, to the loader
-//   fragment_*  rasterizer, and back      link: a fragment with the numerators of its position; `loading`: not ready, for
-//                                         want of its brick; `visit_done`: strobe, a visit's last row was gone through
-//   load_*      frame buffer, and back    link: a brick is wanted; strobes: the last grant, data
-//   fetch_*     external memory (whole)   strobe: which voxels
-//   voxels_*    external memory (whole)   strobe: their densities
-//   colour_*    pixel cache, and back     link: a fragment with its colour, or dead; `gone`: one left the cache's door
-//   table_*     the application, in reset  entry {dead, word} of the classification table
-//   report_*    who counts                what it did; whether all fragments are gone
+//   port        from, to                   what it is
+//   brick_*     volume divider             strobe `fresh`: a visit
+//   fragment_*  rasterizer, and back       link: a fragment with the numerators of its position; `loading`: not ready,
+//                                          for want of its brick; strobe `visit_done`: a visit's last row is through
+//   load_*      frame buffer, and back     link: a brick is wanted; strobes: the last grant, data
+//   fetch_*     external memory (`whole`)  strobe: which voxels are wanted
+//   voxels_*    external memory (`whole`)  strobe: their densities
+//   colour_*    pixel cache, and back      link: a fragment with its colour, or dead; `gone`: one left the cache's door
+//   table_*     the application, in reset  an entry {dead, word} of the classification table
+//   report_*    who counts                 what it did; whether all fragments are gone
 //
-// Registers: filter, traversal, texture_latency_cycles (at least 3), double_buffer, shift, base, dim, texture_base,
-// brick_room_bytes. Elaborated: widths, and what memories hold: TEXTURE_BYTES, at least those of the largest brick with
+// Elaborated are widths and what memories hold: TEXTURE_BYTES, of one buffer, at least those of the largest brick with
 // its border, cut to the volume; BEAT_BYTES, the smaller of mem_bus_bytes and texture_burst_bytes; FRAGMENT_ROOM.
 //
-//    accepted in cycle a         | a + 1, or `whole` when its voxels come        | a + texture_latency_cycles - 1, or when
-//                                |                                               |     there is room: seen at the output
-//   fragment  +----------+       |  +-----------+  8   +--------+  +-----------+ |
-//   --------->| position |--> corner -->| texture   |----->| filter |->| classify  |-----> shaded[] ----> colour
-//             | address  |       |  | memory    |  |   +--------+  +-----------+ |   ^ (straight through
-//             +----------+       |  +-----------+  |       ^         table[]     |   |  with a latency of 3)
-//               |  |  +---> fetch_* (whole)   voxels_*     |                     | due[]: when
-//               |  +-----> weights[] ----------------------+                     |
-//               +--------> place[]: x, y ------------------------------------------------------------> colour
+//             in cycle a                     in a + 1; `whole`: when voxels come               in a + latency - 2, or
+//             it is accepted                                                                   when there is room
+//            +----------+    +---------+  8  +--------+  +----------+
+//  fragment -| position |-+->| texture |--+->| filter |->| classify |-> shaded[] ---------------------+-> colour
+//            | address  | |  | memory  |  |  +--------+  +----------+      |                          |
+//            +----------+ |  +---------+  |      |         colours[]       +- straight on: latency 3 -+
+//                         |    ^          |      |                                                    |
+//                         +----|-> fetch  +- voxels         due[]: the cycle in which it may be shown |
+//                         +----|--------- weights[]                                                   |
+//                         +----|--------- place[]: x, y ----------------------------------------------+
+//                              |
+//     brick, load <--> texture_loader
 //
-// Fragments keep their order, so that arrays [FRAGMENT_ROOM] hold each part of them at one slot and four pointers
-// follow each other through the slots: accepted, filtered, ripe (its latency is over), shown.
+// Fragments keep their order. So what is known of each lies in arrays [FRAGMENT_ROOM] at one slot, and four pointers
+// follow each other through the slots: accepted, filtered, ripe (the latency is over), shown.
 `include "vodr_hw.vh"
 `include "status.vh"
 
@@ -41,47 +43,61 @@ module texture_unit #(
     parameter TEXTURE_BYTES = `VODR_DEFAULT_TEXTURE_MEMORY_BYTES / 2,
     parameter FRAGMENT_ROOM = `VODR_DEFAULT_FRAGMENT_FIFO
 ) (
-    // verilator lint_off UNUSEDSIGNAL
-    // Ports are as wide as any machine needs.
     input                            clk,
     input                            rst,
-    input                            brick_fresh,
-    input [47:0]                     brick_number,
-    input [15:0]                     brick_lo_x, brick_lo_y, brick_lo_z,
-    input [15:0]                     brick_hi_x, brick_hi_y, brick_hi_z,
-    input                            fragment_valid, fragment_visit_done,
-    input [14:0]                     fragment_x, fragment_y,
-    input signed [63:0]              fragment_a_x, fragment_a_y, fragment_a_z,
-    output reg                       fragment_ready, fragment_loading,
-    output                           load_valid,
-    output [47:0]                    load_address,
-    output [31:0]                    load_bytes,
-    input                            load_ready, load_granted, load_data_valid,
-    input [8:0]                      load_data_bytes,
-    input [8*MEM_BUS_BYTES-1:0]      load_data,
-    output reg                       fetch_valid,
-    output reg [15:0]                fetch_lo_x, fetch_lo_y, fetch_lo_z,
-    output reg [15:0]                fetch_hi_x, fetch_hi_y, fetch_hi_z,
-    input                            voxels_valid,
-    input [127:0]                    voxels_density,
-    output reg                       colour_valid, colour_dead,
-    output reg [14:0]                colour_x, colour_y,
-    output reg [4*FB_BITS-1:0]       colour_rgba,
-    input                            colour_ready, colour_gone,
-    output reg [3:0]                 report_status,
-    output reg                       report_idle,
-    input                            table_write,
-    input [11:0]                     table_address,
-    input [4*FB_BITS:0]              table_data,
+
+    // verilator lint_off UNUSEDSIGNAL
+    // Registers and ports are as wide as any machine needs.
     input                            filter,
-    input [1:0]                      traversal,
-    input [7:0]                      texture_latency_cycles,
+    input                      [1:0] traversal,
+    input                      [7:0] texture_latency_cycles, // at least 3
     input                            double_buffer,
-    input [4:0]                      shift,
-    input signed [63:0]              base_x, base_y, base_z,
-    input [15:0]                     dim_x, dim_y, dim_z,
-    input [47:0]                     texture_base,
-    input [47:0]                     brick_room_bytes
+    input                      [4:0] shift,
+    input signed              [63:0] base_x, base_y, base_z,
+    input                     [15:0] dim_x, dim_y, dim_z,
+    input                     [47:0] texture_base,
+    input                     [47:0] brick_room_bytes,
+
+    input                            table_write,
+    input                     [11:0] table_address,
+    input              [4*FB_BITS:0] table_data,
+
+    input                            brick_fresh,
+    input                     [47:0] brick_number,
+    input                     [15:0] brick_lo_x, brick_lo_y, brick_lo_z,
+    input                     [15:0] brick_hi_x, brick_hi_y, brick_hi_z,
+
+    input                            fragment_valid,
+    input                            fragment_visit_done,
+    input                     [14:0] fragment_x, fragment_y,
+    input signed              [63:0] fragment_a_x, fragment_a_y, fragment_a_z,
+    output reg                       fragment_ready,
+    output reg                       fragment_loading,
+
+    output                           load_valid,
+    output                    [47:0] load_address,
+    output                    [31:0] load_bytes,
+    input                            load_ready,
+    input                            load_granted,
+    input                            load_data_valid,
+    input                      [8:0] load_data_bytes,
+    input      [8*MEM_BUS_BYTES-1:0] load_data,
+
+    output reg                       fetch_valid,
+    output reg                [15:0] fetch_lo_x, fetch_lo_y, fetch_lo_z,
+    output reg                [15:0] fetch_hi_x, fetch_hi_y, fetch_hi_z,
+    input                            voxels_valid,
+    input                    [127:0] voxels_density,
+
+    output reg                       colour_valid,
+    output reg                       colour_dead,
+    output reg                [14:0] colour_x, colour_y,
+    output reg       [4*FB_BITS-1:0] colour_rgba,
+    input                            colour_ready,
+    input                            colour_gone,
+
+    output reg                 [3:0] report_status,
+    output reg                       report_idle
     // verilator lint_on UNUSEDSIGNAL
 );
     localparam DENSITY_BYTES = DENSITY_BITS > 8 ? 2 : 1;
@@ -126,15 +142,17 @@ module texture_unit #(
 
     // ---- address: which voxels, and how they are weighed ----
 
-    // Position along an axis; in linear, from the centre of voxel 0 on. Higher bits than Q_BITS are all its sign.
+    // Position along an axis; in linear, from the centre of voxel 0 on. Bits beyond Q_BITS are its sign, too.
     // verilator lint_off UNUSEDSIGNAL
-    function [Q_BITS-1:0] place_of;
+    function [Q_BITS-1:0] position_of;
         input signed [63:0] a;
         input [Q_BITS-1:0]  base;
         reg signed [63:0]   moved;
+        reg [Q_BITS-1:0]    half;
         begin
             moved = a >>> shift;
-            place_of = base + moved[Q_BITS-1:0] - {{(Q_BITS - FRACTION_BITS){1'b0}}, linear, {(FRACTION_BITS - 1){1'b0}}};
+            half = {{(Q_BITS - FRACTION_BITS){1'b0}}, linear, {(FRACTION_BITS - 1){1'b0}}};
+            position_of = base + moved[Q_BITS-1:0] - half;
         end
     endfunction
 
@@ -157,9 +175,9 @@ module texture_unit #(
         q_y = {Q_BITS{1'b0}};
         q_z = {Q_BITS{1'b0}};
         if (accept) begin
-            q_x = place_of(fragment_a_x, base_x[Q_BITS-1:0]);
-            q_y = place_of(fragment_a_y, base_y[Q_BITS-1:0]);
-            q_z = place_of(fragment_a_z, base_z[Q_BITS-1:0]);
+            q_x = position_of(fragment_a_x, base_x[Q_BITS-1:0]);
+            q_y = position_of(fragment_a_y, base_y[Q_BITS-1:0]);
+            q_z = position_of(fragment_a_z, base_z[Q_BITS-1:0]);
         end
     end
 
@@ -170,7 +188,7 @@ module texture_unit #(
     wire        two_y = two_of(q_y[FRACTION_BITS +: 16], dim_y);
     wire        two_z = two_of(q_z[FRACTION_BITS +: 16], dim_z);
 
-    // In texture memory, bytes of the brick: its first voxel's place, and how far on its neighbours are.
+    // The first voxel's byte among those of its brick, and how far on its neighbours are.
     wire [31:0] step_x = two_x ? DENSITY_BYTES : 32'd0;
     wire [31:0] step_y = two_y ? row_bytes : 32'd0;
     wire [31:0] step_z = two_z ? plane_bytes : 32'd0;
@@ -195,12 +213,12 @@ module texture_unit #(
             fetch_hi_z <= lo_z + {15'd0, two_z};
         end
 
-    // ---- texture memory: written word by word, read at eight addresses that were registered ----
+    // ---- texture memory: written a word a beat, read by eight ports ----
 
     reg [8*WORD_BYTES-1:0]    memory [0:(2 << BUFFER_BITS)-1];
-    reg                       read;        // eight voxels of a fragment that was accepted in the cycle before
+    reg                       read;   // eight words, for the fragment that was accepted in the cycle before
     wire                      filtering = whole ? voxels_valid : read;
-    wire [8*DENSITY_BITS-1:0] voxels;      // of the fragment that is filtered, x fastest
+    wire [8*DENSITY_BITS-1:0] voxels; // of the fragment that is filtered, x fastest
 
     always @(posedge clk)
         if (write) memory[{write_buffer, write_word}] <= write_data;
@@ -285,11 +303,11 @@ module texture_unit #(
 
     // ---- filtered and classified ----
 
-    reg [4*FB_BITS:0]      colours [0:(1 << DENSITY_BITS)-1]; // of densities: {dead, word}
-    reg [4*FB_BITS:0]      shaded [0:LAST_SLOT];
-    reg [DENSITY_BITS-1:0]     density;
-    wire [4*FB_BITS:0]         colour = colours[density];
-    wire [3*WEIGHT_BITS-1:0]   weight = weights[filtered_at];
+    reg [4*FB_BITS:0]        colours [0:(1 << DENSITY_BITS)-1]; // of densities: {dead, word}
+    reg [4*FB_BITS:0]        shaded [0:LAST_SLOT];
+    reg [DENSITY_BITS-1:0]   density;
+    wire [4*FB_BITS:0]       colour = colours[density];
+    wire [3*WEIGHT_BITS-1:0] weight = weights[filtered_at];
 
     always @(posedge clk)
         if (table_write) colours[table_address[DENSITY_BITS-1:0]] <= table_data;
@@ -303,7 +321,7 @@ module texture_unit #(
     always @(posedge clk)
         if (filtering) shaded[filtered_at] <= colour;
 
-    // ---- ripe: the latency is over. A filtered fragment is noted with the cycle in which that will be so ----
+    // ---- ripe: the latency is over; with each filtered fragment is noted when that will be so ----
 
     reg [7:0]            now;
     reg [7:0]            due [0:LAST_SLOT];
@@ -362,5 +380,4 @@ module texture_unit #(
                               : fragment_loading ? `STATUS_STALLED_TEXTURE_LOAD
                                                  : `STATUS_STALLED_FRAGMENT_FIFO;
         end
-
 endmodule

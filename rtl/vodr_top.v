@@ -29,7 +29,8 @@ module vodr_top #(
     parameter BEAT_BYTES         = MEM_BUS_BYTES,
     parameter TEXTURE_BYTES      = `VODR_DEFAULT_TEXTURE_MEMORY_BYTES / 2,
     parameter FRAGMENT_ROOM      = `VODR_DEFAULT_FRAGMENT_FIFO,
-    parameter EMPTY_BRICKS       = 1
+    parameter EMPTY_BRICKS       = 1,
+    parameter FRAME_LINES        = 1
 ) (
     input                                clk,
     input                                rst,
@@ -53,6 +54,8 @@ module vodr_top #(
     input                                skip_empty,
     input                                index,
     input                          [1:0] replacement,
+    input                                write_policy,
+    input                                clear_on_first_touch,
     input                                fb_layout,
     input                         [15:0] brick_setup_cycles, slice_setup_cycles,
     input                          [7:0] texture_latency_cycles,
@@ -136,12 +139,13 @@ module vodr_top #(
 );
     // ---- registers: taken over while rst is up, so that nothing follows from an input without a register between ----
 
-    reg [2289:0] held;
+    reg [2291:0] held;
     wire [15:0] held_dim_x, held_dim_y, held_dim_z, held_brick_setup_cycles, held_slice_setup_cycles,
                 held_mem_latency_cycles, held_dram_trfc_cycles, held_edge_x, held_edge_y, held_edge_z, held_bricks_x,
                 held_bricks_y, held_bricks_z, held_eye_x, held_eye_y, held_eye_z, held_lines_across;
     wire [14:0] held_width_px, held_height_px, held_slices, held_tile_px, held_centre_x, held_centre_y;
-    wire held_perspective, held_filter, held_double_buffer, held_skip_empty, held_index, held_fb_layout, held_memory;
+    wire held_perspective, held_filter, held_double_buffer, held_skip_empty, held_index, held_write_policy,
+         held_clear_on_first_touch, held_fb_layout, held_memory;
     wire [4:0] held_shift, held_bound_x_fraction, held_bound_y_fraction, held_bound_k_fraction;
     wire signed [63:0] held_base_x, held_base_y, held_base_z, held_step_u_x, held_step_u_y, held_step_u_z,
                        held_step_v_x, held_step_v_y, held_step_v_z, held_step_s_x, held_step_s_y, held_step_s_z,
@@ -165,8 +169,8 @@ module vodr_top #(
                 dim_x, dim_y, dim_z, width_px, height_px, slices, perspective, shift, base_x, base_y, base_z,
                 step_u_x, step_u_y, step_u_z, step_v_x, step_v_y, step_v_z, step_s_x, step_s_y, step_s_z,
                 depth_first, depth_step, blend, filter, traversal, double_buffer, skip_empty, index, replacement,
-                fb_layout, brick_setup_cycles, slice_setup_cycles, texture_latency_cycles, memory,
-                mem_latency_cycles, texture_burst_bytes, dram_banks, dram_row_bytes, dram_trcd_cycles,
+                write_policy, clear_on_first_touch, fb_layout, brick_setup_cycles, slice_setup_cycles,
+                texture_latency_cycles, memory, mem_latency_cycles, texture_burst_bytes, dram_banks, dram_row_bytes, dram_trcd_cycles,
                 dram_tcas_cycles, dram_trp_cycles, dram_refresh_cycles, dram_trfc_cycles, edge_x, edge_y, edge_z,
                 bricks_x, bricks_y, bricks_z, eye_x, eye_y, eye_z, nest_0, nest_1, nest_2, tile_px, centre_x,
                 centre_y, bound_x_m_x, bound_x_m_y, bound_x_m_z, bound_y_m_x, bound_y_m_y, bound_y_m_z, bound_z_m_x,
@@ -180,7 +184,8 @@ module vodr_top #(
         held_shift, held_base_x, held_base_y, held_base_z, held_step_u_x, held_step_u_y, held_step_u_z,
         held_step_v_x, held_step_v_y, held_step_v_z, held_step_s_x, held_step_s_y, held_step_s_z, held_depth_first,
         held_depth_step, held_blend, held_filter, held_traversal, held_double_buffer, held_skip_empty, held_index,
-        held_replacement, held_fb_layout, held_brick_setup_cycles, held_slice_setup_cycles,
+        held_replacement, held_write_policy, held_clear_on_first_touch, held_fb_layout, held_brick_setup_cycles,
+        held_slice_setup_cycles,
         held_texture_latency_cycles, held_memory, held_mem_latency_cycles, held_texture_burst_bytes,
         held_dram_banks, held_dram_row_bytes, held_dram_trcd_cycles, held_dram_tcas_cycles, held_dram_trp_cycles,
         held_dram_refresh_cycles, held_dram_trfc_cycles, held_edge_x, held_edge_y, held_edge_z, held_bricks_x,
@@ -308,9 +313,10 @@ module vodr_top #(
     pixel_cache #(
         .FB_BITS(FB_BITS), .LINE_W(LINE_W), .LINE_H(LINE_H), .CACHE_BYTES(CACHE_BYTES), .WAYS(WAYS),
         .BLEND_CYCLES(BLEND_CYCLES), .NONBLOCKING(NONBLOCKING), .NONBLOCKING_FIFO(NONBLOCKING_FIFO),
-        .NONBLOCKING_MISSES(NONBLOCKING_MISSES)
+        .NONBLOCKING_MISSES(NONBLOCKING_MISSES), .WRITE_FIFO(WRITE_FIFO), .FRAME_LINES(FRAME_LINES)
     ) the_pixel_cache (
-        .clk(clk), .rst(rst), .index(held_index), .replacement(held_replacement), .fb_layout(held_fb_layout),
+        .clk(clk), .rst(rst), .index(held_index), .replacement(held_replacement), .write_policy(held_write_policy),
+        .clear_on_first_touch(held_clear_on_first_touch), .fb_layout(held_fb_layout),
         .lines_across(held_lines_across), .colour_valid(colour_valid), .colour_dead(colour_dead), .colour_x(colour_x),
         .colour_y(colour_y), .colour_ready(colour_ready), .colour_gone(colour_gone), .colour_hazard(colour_hazard),
         .look_up_valid(look_up_valid), .look_up_miss(look_up_miss), .look_up_replaced(look_up_replaced),

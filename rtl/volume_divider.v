@@ -86,22 +86,22 @@ module volume_divider #(
     reg  [15:0] step;  // of its bounding
     wire        some, found, exhausted;
     reg         empty_here;
-    wire        left_out = state == BOUND && step == 16'd0 && level == BRICK && skip_empty && empty_here;
-    wire        bounded  = state == BOUND && step + 16'd1 == brick_setup_cycles;
-    wire        inward   = bounded && some && level != BRICK;
-    wire        probes   = bounded && some && level == BRICK;
-    wire        push     = state == PUSH && !brick_valid;
-    wire        over     = left_out || (bounded && !some) || exhausted || push; // on to the next box
-    wire        moves    = over || inward;
-    wire        offered  = push || (brick_valid && !brick_ready);
-    reg         left;    // there is a next box
+    reg         left;  // there is a next box
+    wire        left_out  = state == BOUND && step == 16'd0 && level == BRICK && skip_empty && empty_here;
+    wire        bounded   = state == BOUND && step + 16'd1 == brick_setup_cycles;
+    wire        candidate = level == BRICK && some;
+    wire        inward    = bounded && level != BRICK && some;
+    wire        push      = state == PUSH && !brick_valid;
+    wire        over      = left_out || (bounded && !some) || exhausted || push; // on to the next box
+    wire        moves     = over || inward;
+    wire        offered   = push || (brick_valid && !brick_ready);
 
     always @(posedge clk)
         if (rst)
             state <= BOUND;
         else if (moves)
             state <= inward || left ? BOUND : DONE;
-        else if (probes)
+        else if (bounded)
             state <= PROBE;
         else if (found)
             state <= PUSH;
@@ -194,7 +194,8 @@ module volume_divider #(
     reg         empty_bricks [0:EMPTY_BRICKS-1];
 
     always @* begin
-        {then_x, then_y, then_z, then_number} = 96'd0;
+        {then_x, then_y, then_z} = 48'd0;
+        then_number = 48'd0;
         if (rst || moves) begin
             then_x = brick_index(turn_of(2'd0, nest_0, nest_1, turns), bricks_x, eye_x, under);
             then_y = brick_index(turn_of(2'd1, nest_0, nest_1, turns), bricks_y, eye_y, under);
@@ -266,10 +267,11 @@ module volume_divider #(
         .bound_k_fraction(bound_k_fraction),
         .x0(x0), .y0(y0), .x1(x1), .y1(y1), .k0(k0), .k1(k1), .some(some));
 
-    // ---- its first fragment: the slices are made ready in the last cycles of the bounding ----
+    // ---- its first fragment: the first slices are made ready while the bounding lasts ----
 
     slice_probe slice_probe (
-        .clk(clk), .begins(bound_step == 5'd26), .shift_in(bound_step == 5'd27 || probes), .probing(state == PROBE),
+        .clk(clk), .begins(bound_step == 5'd26 && candidate),
+        .shift_in((bound_step == 5'd27 || bound_step == 5'd28) && candidate), .probing(state == PROBE),
         .found(found), .exhausted(exhausted),
         .lo_x(lo_x), .lo_y(lo_y), .lo_z(lo_z), .hi_x(hi_x), .hi_y(hi_y), .hi_z(hi_z),
         .x0(x0), .y0(y0), .x1(x1), .y1(y1), .k0(k0), .k1(k1),

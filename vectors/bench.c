@@ -164,8 +164,11 @@ vodr_status bench_open(bench *b, const block_bench *what, const vodr_machine *ma
     if (!draw_volume(b, what->block == VODR_BLOCK_FRAME_BUFFER) || !draw_table(b))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a volume and a table");
     b->scene.view = views_any(&b->random, b->scene.input.dims_vox);
+    vodr_view other = b->scene.view;
     if (what->look)
-        what->look(&b->random, b->scene.input.dims_vox, &b->scene.view);
+        what->look(&b->random, b->scene.input.dims_vox, &other);
+    if (vodr_view_check(&other, b->scene.input.dims_vox, NULL) == VODR_OK)
+        b->scene.view = other;
     vodr_status status = bench_set_up(b, error);
     if (status != VODR_OK)
         return status;

@@ -49,7 +49,7 @@ typedef struct block_bench {
     const char *const *machines;
     /* Draws what it has as registers. NULL: nothing. */
     void (*draw)(rng *random, vodr_machine *machine);
-    /* Draws another view of a volume than views_any() did. NULL: none. */
+    /* Draws another view of a volume than views_any() did, which is taken if it is legal. NULL: none. */
     void (*look)(rng *random, const int32_t dims_vox[3], vodr_view *view);
     /* Clocks the block until that many transactions are done, or bench_differs(). */
     void (*traffic)(bench *b, uint64_t transactions);

@@ -1,5 +1,7 @@
 /* frame_buffer.c - traffic for the frame buffer: a pixel cache that wants lines and writes lines or pixels, a texture
  * unit that wants bricks or parts of them; each as many at once as there can be, and where it likes. */
+#include <string.h>
+
 #include "bench.h"
 #include "layout.h"
 #include "voxels.h"
@@ -11,24 +13,31 @@ static const char *const machines[] = {"",
                                        "line_px=2x1 mem_bus_bytes=16 nonblocking=1 nonblocking_misses=8",
                                        NULL};
 
-static void draw(rng *random, vodr_machine *m)
+/* A figure mostly small, so that much happens, else the largest there can be. */
+static int32_t figure(rng *random, int32_t least, int32_t most)
 {
-    bool late = rng_one_in(random, 8);
-    m->write_policy = (int32_t)rng_int(random, VODR_WRITE_POLICY_BACK, VODR_WRITE_POLICY_THROUGH);
-    m->memory = (int32_t)rng_int(random, VODR_MEMORY_FIXED, VODR_MEMORY_DRAM);
-    m->mem_latency_cycles = rng_one_in(random, 3) ? 3 : (int32_t)rng_int(random, 3, late ? 1000 : 60);
-    m->texture_burst_bytes = 16 << rng_int(random, 0, 8);
-    m->dram_banks = 1 << rng_int(random, 0, 6);
-    m->dram_row_bytes = 64 << rng_int(random, 0, rng_one_in(random, 2) ? 10 : 2);
-    m->dram_trcd_cycles = (int32_t)rng_int(random, 1, late ? 255 : 12);
-    m->dram_tcas_cycles = rng_one_in(random, 3) ? 3 : (int32_t)rng_int(random, 3, late ? 255 : 12);
-    m->dram_trp_cycles = (int32_t)rng_int(random, 1, late ? 255 : 12);
-    m->dram_trfc_cycles = (int32_t)rng_int(random, 1, rng_one_in(random, 2) ? 3 : 60);
-    m->dram_refresh_cycles =
-        rng_one_in(random, 4) ? 0 : m->dram_trfc_cycles + (int32_t)rng_int(random, 1, rng_one_in(random, 2) ? 3 : 200);
+    return rng_one_in(random, 3) ? least : rng_one_in(random, 5) ? most : (int32_t)rng_int(random, least, 12);
 }
 
-enum { TRANSACTIONS_A_MEMORY = 2000 };
+static void draw(rng *random, vodr_machine *m)
+{
+    m->brick = (int32_t)rng_int(random, 3, rng_one_in(random, 2) ? 48 : 5);
+    m->write_policy = (int32_t)rng_int(random, VODR_WRITE_POLICY_BACK, VODR_WRITE_POLICY_THROUGH);
+    m->memory = rng_one_in(random, 3) ? VODR_MEMORY_FIXED : VODR_MEMORY_DRAM;
+    m->mem_latency_cycles = figure(random, 3, 300);
+    m->texture_burst_bytes = rng_one_in(random, 3) ? 4096 : 16 << rng_int(random, 0, 7);
+    m->dram_banks = 1 << rng_int(random, 0, 6);
+    m->dram_row_bytes = 64 << (rng_one_in(random, 3) ? 10 : rng_int(random, 0, 9));
+    m->dram_trcd_cycles = figure(random, 1, 255);
+    m->dram_tcas_cycles = figure(random, 3, 255);
+    m->dram_trp_cycles = figure(random, 1, 255);
+    m->dram_trfc_cycles = (int32_t)rng_int(random, 1, rng_one_in(random, 2) ? 3 : 60);
+    m->dram_refresh_cycles = m->dram_trfc_cycles + (int32_t)rng_int(random, 1, rng_one_in(random, 2) ? 3 : 200);
+    if (rng_one_in(random, 4))
+        m->dram_refresh_cycles = 0;
+}
+
+enum { TRANSACTIONS_A_MEMORY = 1000 };
 
 /* Both sides of the bus. */
 typedef struct sides {
@@ -118,16 +127,17 @@ static void ask_load(bench *b, sides *s)
     note_load(s, s->load.bytes);
 }
 
-/* What they ask for in the next cycle. */
+/* What they ask for in the next cycle. What is not asked for any more is not kept either. */
 static void ask(bench *b, sides *s)
 {
     s->fill.valid = s->fills < s->fills_room && rng_one_in(&b->random, s->likes_fill);
-    if (s->fill.valid)
-        s->fill.address = any_line(b, s);
+    s->fill.address = any_line(b, s);
     s->fills += s->fill.valid;
     s->write.valid = s->writes < s->writes_room && rng_one_in(&b->random, s->likes_write);
     if (s->write.valid)
         ask_write(b, s);
+    else
+        memset(s->write.data, (int)bench_bits(&b->random, 8), (size_t)s->line_bytes);
     s->writes += s->write.valid;
     if (!s->load.valid && !s->loading && !s->loads[0] && rng_one_in(&b->random, s->likes_load)) {
         s->load.valid = true;
@@ -153,6 +163,7 @@ static void traffic(bench *b, uint64_t transactions)
     const frame_buffer_in in = {.fill = &s.fill, .write = &s.write, .load = &s.load};
     uint64_t done = 0, most = transactions < TRANSACTIONS_A_MEMORY ? transactions : TRANSACTIONS_A_MEMORY;
     like(b, &s);
+    ask(b, &s);
     for (; done < most && !bench_differs(b); b->cycles++) {
         bool taken = s.load.valid && out.load.ready;
         if (rng_one_in(&b->random, 200))
@@ -160,7 +171,7 @@ static void traffic(bench *b, uint64_t transactions)
         face->clock(face->state, &in, &out);
         done += out.filled.valid + out.written.valid + out.load.data_valid;
         if (taken)
-            s.load.valid = false;
+            s.load = (load_port){.valid = false};
         hear(&s, &out);
         ask(b, &s);
     }

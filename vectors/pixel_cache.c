@@ -16,7 +16,7 @@ static const char *const machines[] = {
     "ways=1 line_px=4x4 cache_bytes=64 nonblocking=1 nonblocking_fifo=1 nonblocking_misses=1 write_fifo=1",
     NULL};
 
-enum { BLENDING = 256, WAITING = 512, THRASHING = 24, BLOCKS_BEFORE = 4 };
+enum { BLENDING = 256, THRASHING = 24, BLOCKS_BEFORE = 4, LONGEST_FRAME = 1500 };
 
 static void draw(rng *random, vodr_machine *m)
 {
@@ -24,6 +24,18 @@ static void draw(rng *random, vodr_machine *m)
     m->replacement = (int32_t)rng_int(random, VODR_REPLACEMENT_LRU, VODR_REPLACEMENT_RANDOM);
     m->fb_layout = (int32_t)rng_int(random, VODR_FB_LAYOUT_LINEAR, VODR_FB_LAYOUT_TILED);
     m->write_policy = rng_one_in(random, 3) ? VODR_WRITE_POLICY_THROUGH : VODR_WRITE_POLICY_BACK;
+}
+
+/* Frames as long as they can be, so that numbers of lines have all their bits. */
+static void look(rng *random, const int32_t dims_vox[3], vodr_view *view)
+{
+    enum { SHORT_PX = 8 };
+    (void)dims_vox;
+    if (!rng_one_in(random, 4))
+        return;
+    bool wide = rng_one_in(random, 2);
+    view->width_px = wide ? VODR_MAX_SIZE_PX : SHORT_PX;
+    view->height_px = wide ? SHORT_PX : VODR_MAX_SIZE_PX;
 }
 
 /* ---- fragments: the texture unit's side ---- */
@@ -179,7 +191,8 @@ static void traffic(bench *b, uint64_t transactions)
 {
     pixel_cache_face *face = &b->faces->pixel_cache;
     pixel_cache_out out = b->reset->pixel_cache;
-    texture_side texture = {.left = (uint64_t)rng_int(&b->random, 1, (int64_t)transactions)};
+    uint64_t most = transactions < LONGEST_FRAME ? transactions : LONGEST_FRAME;
+    texture_side texture = {.left = (uint64_t)rng_int(&b->random, 1, (int64_t)most)};
     blend_side blender = {.port = {.valid = false}};
     memory_side memory = {0};
     report_port before[BLOCKS_BEFORE] = {{0}};
@@ -258,6 +271,7 @@ static const char *illegal(const bench *b, void *rules, const void *inputs, cons
 const block_bench bench_pixel_cache = {.block = VODR_BLOCK_PIXEL_CACHE,
                                        .machines = machines,
                                        .draw = draw,
+                                       .look = look,
                                        .traffic = traffic,
                                        .illegal = illegal,
                                        .rules_bytes = sizeof(cache_rules),

@@ -28,10 +28,12 @@ static void range(rng *random, int32_t *lo, int32_t *hi)
     *hi = *lo + size;
 }
 
-/* A limit some units or pixels from a numerator. */
-static int64_t limit_near(rng *random, int64_t numerator, int64_t step)
+/* A limit some units or pixels from a numerator, or beyond all that its side can have. */
+static int64_t limit_near(rng *random, int64_t numerator, int64_t step, int64_t side)
 {
     const int64_t most = ((int64_t)1 << NUMERATOR_BITS) - 1;
+    if (rng_one_in(random, 6))
+        return side * most;
     int64_t away = rng_int(random, -1, 1), pixels = rng_int(random, -3, 3);
     away += rng_one_in(random, 3) ? 0 : pixels * (step / 4);
     away += rng_one_in(random, 2) ? 0 : rng_int(random, 0, 30) * (step / 8);
@@ -49,13 +51,13 @@ static void any_axis(rng *random, const px_rect *bound, int32_t x, int32_t y, in
     p->origin[c] = below(random, limit / 2);
     int64_t a = numerator_at(p, c, x, y), step = rng_one_in(random, 2) ? p->step_u[c] : p->step_v[c];
     step = step < 0 ? -step : step;
-    s->lo[c] = limit_near(random, a - step, step);
-    s->hi[c] = limit_near(random, a + step + 1, step);
+    s->lo[c] = limit_near(random, a - step, step, -1);
+    s->hi[c] = limit_near(random, a + step + 1, step, 1);
 }
 
 static slice_port any_slice(rng *random)
 {
-    slice_port p = {.valid = true, .last = rng_one_in(random, 3)};
+    slice_port p = {.last = rng_one_in(random, 3)};
     px_rect *b = &p.bound;
     range(random, &b->x0, &b->x1);
     range(random, &b->y0, &b->y1);
@@ -82,10 +84,10 @@ static void traffic(bench *b, uint64_t transactions)
             offers = rng_one_in(&b->random, 3) ? 2 : rng_int(&b->random, 2, 60);
         done += taken + (out.fragment.valid && accept.ready);
         face->clock(face->state, &in, &out);
-        if (taken)
-            slice.valid = false;
-        if (!slice.valid && rng_one_in(&b->random, offers))
+        if (taken || !slice.valid) {
             slice = any_slice(&b->random);
+            slice.valid = rng_one_in(&b->random, offers);
+        }
         accept.ready = rng_one_in(&b->random, haste);
         accept.loading = rng_one_in(&b->random, 2);
     }

@@ -1,5 +1,5 @@
-/* slice_generator.c - traffic for the slice generator: any boxes on any slices of the scene's view, one of which is
- * parallel, the next in perspective; a divider that offers them, a rasterizer that takes slices when it likes. */
+/* slice_generator.c - traffic for the slice generator: any boxes on any slices of the scene's view, parallel or in
+ * perspective, on none as well; a divider that offers them, a rasterizer that takes slices when it likes. */
 #include "bench.h"
 
 static const char *const machines[] = {"", NULL};
@@ -23,12 +23,14 @@ static void range(rng *random, int32_t size, int32_t *lo, int32_t *hi)
 static brick_port any_brick(bench *b)
 {
     const vodr_view *v = &b->scene.view;
-    brick_port p = {.valid = true};
+    brick_port p = {.valid = false};
     for (int c = 0; c < 3; c++)
         range(&b->random, b->scene.input.dims_vox[c], &p.box.lo[c], &p.box.hi[c]);
     range(&b->random, v->width_px, &p.bound.x0, &p.bound.x1);
     range(&b->random, v->height_px, &p.bound.y0, &p.bound.y1);
     range(&b->random, v->slices, &p.k0, &p.k1);
+    if (rng_one_in(&b->random, 20))
+        p.k1 = p.k0;
     return p;
 }
 
@@ -47,10 +49,10 @@ static void traffic(bench *b, uint64_t transactions)
             haste = rng_one_in(&b->random, 2) ? rng_int(&b->random, 2, 30) : 1;
         done += out.slice.valid && ready.ready;
         face->clock(face->state, &in, &out);
-        if (taken)
-            brick.valid = false;
-        if (!brick.valid && !rng_one_in(&b->random, 3))
+        if (taken || !brick.valid) {
             brick = any_brick(b);
+            brick.valid = !rng_one_in(&b->random, 3);
+        }
         ready.ready = rng_one_in(&b->random, haste);
     }
     b->left = transactions - done;

@@ -21,7 +21,7 @@ enum { BUFFER_BYTES = 1 << 16, LARGEST_EDGE_VOX = 30, VISITS = 8, WAITING = 1024
 static void draw(rng *random, vodr_machine *m)
 {
     m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
-    m->filter = rng_one_in(random, 4) ? VODR_FILTER_NEAREST : VODR_FILTER_LINEAR;
+    m->filter = rng_one_in(random, 3) ? VODR_FILTER_NEAREST : VODR_FILTER_LINEAR;
     m->kill_transparent = (int32_t)rng_int(random, 0, 1);
     m->texture_latency_cycles =
         rng_one_in(random, 3) ? 3 : (int32_t)rng_int(random, 3, rng_one_in(random, 3) ? 255 : 12);

@@ -18,7 +18,7 @@
 #include "lockstep.h"
 #include "modules.h"
 
-enum { EPISODE_TRANSACTIONS = 5000 };
+enum { EPISODE_TRANSACTIONS = 1000 };
 
 static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp},
                                                {.name = "blend", .test_func = lockstep_blend}};
