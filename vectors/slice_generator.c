@@ -78,7 +78,9 @@ static const char *illegal(const bench *b, void *rules, const void *inputs, cons
             return "brick_lo and brick_hi are no box of the volume";
     if (!is_within(p->bound.x0, p->bound.x1, v->width_px) || !is_within(p->bound.y0, p->bound.y1, v->height_px))
         return "brick_x0, _y0, _x1, _y1 are no rectangle of the frame";
-    return is_within(p->k0, p->k1, v->slices) ? NULL : "brick_k0 and brick_k1 are no range of slices of the view";
+    if (p->k0 > p->k1 || p->k1 > v->slices)
+        return "brick_k0 and brick_k1 are no range of slices of the view, nor none";
+    return NULL;
 }
 
 const block_bench bench_slice_generator = {.block = VODR_BLOCK_SLICE_GENERATOR,
