@@ -31,8 +31,10 @@ typedef struct bus_state {
     storage *storage;
     memory bus;
     int32_t line_bytes;
-    int64_t now, refresh_until, row_until; /* what the bus waits for since its last grant */
-    fill_ring fills;                       /* addresses */
+    int64_t now, refresh_until, row_until; /* what the bus waits for since its last grant, */
+    int64_t address, bytes;                /* and what that moves after */
+    bool is_write;
+    fill_ring fills; /* addresses */
     write_ring writes;
     coming_ring coming;
     int64_t filled, fill_slots; /* fills granted; lines that can be on their way */
@@ -52,6 +54,9 @@ static int64_t grant(bus_state *s, int64_t address, int64_t bytes, bool write)
     int64_t last = memory_grant(&s->bus, s->now, address, bytes, write);
     s->refresh_until = s->now + (int64_t)(s->bus.refresh_cycles - refresh);
     s->row_until = s->refresh_until + (int64_t)(s->bus.row_cycles - row);
+    s->address = address;
+    s->bytes = bytes;
+    s->is_write = write;
     return last;
 }
 
@@ -120,6 +125,19 @@ static void hand_on(bus_state *s, frame_buffer_out *out)
         coming_ring_pop(&s->coming);
 }
 
+/* The beat that moves in this cycle. What is written lies in memory since its grant. */
+static void move(const bus_state *s, beat_port *out)
+{
+    int64_t beat = s->machine->mem_bus_bytes, done = (s->now - s->row_until) * beat, left = s->bytes - done;
+    out->valid = s->row_until <= s->now && s->now < s->bus.free_cycle;
+    out->read = out->valid && !s->is_write;
+    out->write = out->valid && s->is_write;
+    out->address = s->address + done;
+    out->bytes = (int32_t)(left < beat ? left : beat);
+    if (out->write)
+        storage_read(s->storage, out->address, out->bytes, out->data);
+}
+
 static uint8_t status(const bus_state *s)
 {
     return s->now < s->refresh_until    ? BLOCK_STALLED + VODR_STALL_DRAM_REFRESH
@@ -149,6 +167,7 @@ static void clock(void *state, const frame_buffer_in *in, frame_buffer_out *out)
         s->load.valid = !out->load.granted;
     }
     hand_on(s, out);
+    move(s, &out->memory);
     out->load.ready = !s->load.valid;
     out->report.status = status(s);
     out->report.idle =
