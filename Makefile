@@ -49,7 +49,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long findings contact-sheet crosscheck fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -75,6 +75,10 @@ check-long: ## the same, with 10,000 random cases, 20,000 for the cycles
 	@scripts/deps check fuzz
 	@$(MAKE) -s $(PARALLEL) all tests
 	@scripts/check --long $(BUILD)
+
+vectors: ## write the vectors and golden frames that are kept in vectors/ again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/vodr $(BUILD)/tests/test_frames
+	@scripts/vectors $(BUILD)
 
 cosim-long: ## whole frames of 256^3 in Verilog beside C, a million transactions a block, faults in every block (hours)
 	@scripts/deps rtl check

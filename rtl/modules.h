@@ -1,6 +1,6 @@
-/* modules.h - what our Verilog modules have beside clk, rst and the ports of signals.h (docs/cosimulation.md): registers
- * and parameters by name (registers.h), and a table that is written while rst is up. For those who have no module to
- * ask. */
+/* modules.h - what our Verilog modules have beside clk, rst and the ports of signals.h (docs/cosimulation.md):
+ * registers and parameters by name (registers.h), and a table that is written while rst is up. For those who have no
+ * module to ask. */
 #ifndef VODR_MODULES_H
 #define VODR_MODULES_H
 

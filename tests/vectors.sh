@@ -1,12 +1,14 @@
 #!/bin/sh
 # vectors.sh - the vectors that are kept are what is generated, byte by byte; the blocks in Verilog replay them under
 # Icarus Verilog; and what is wrong with vectors is found and told.
-#   tests/vectors.sh VODR HEADERS    a line a check, then "N passed, N failed"; exit 1 when any failed
+#   tests/vectors.sh VODR [HEADERS]    a line a check, then "N passed, N failed"; exit 1 when any failed
+# Without HEADERS, the folder of vodr_hw.vh, nothing is replayed, and level 2 is left out.
 set -u
 
 # shellcheck source=tests/lib/checks.sh
 . "$(dirname "$0")/lib/checks.sh"
-headers=$(cd "$2" && pwd) || exit 2
+headers=
+[ $# -lt 2 ] || headers=$(cd "$2" && pwd) || exit 2
 begin_checks "$0" "$1"
 kept=$root/vectors
 
@@ -22,7 +24,7 @@ $(grep -v '^#' "$kept/list.txt")
 END
 equal 'SHA256SUMS' "$(cd "$kept" && sha256sum --quiet -c SHA256SUMS 2>&1)" ''
 equal 'SHA256SUMS names every file' "$(sed 's/.*  //' "$kept/SHA256SUMS" | sort)" \
-    "$(cd "$kept" && ls ./*/level*.txt frames.txt | sed 's|^\./||' | sort)"
+    "$(cd "$kept" && find . -name 'level*.txt' -o -name frames.txt | sed 's|^\./||' | sort)"
 
 # ---- under Icarus Verilog ----
 
@@ -44,7 +46,9 @@ fails() {
 }
 
 blender=$kept/alpha_blender/level1.txt
-if command -v iverilog >/dev/null; then
+if [ -z "$headers" ]; then
+    :
+elif command -v iverilog >/dev/null; then
     for file in "$kept"/*/level*.txt; do
         replays "$file"
         verdict "replayed: ${file#"$kept/"}" "$([ "$(tail -n 1 ../out)" = PASS ] || tail -n 3 ../out ../err)"
@@ -69,6 +73,7 @@ fi
 
 # checked CODE WORDS [BLOCK]: what stands in the file `bad`
 checked() {
+    # shellcheck disable=SC2094 # it is read alone
     bad "$1" "$2" "$vodr" vectors check "${3:-alpha_blender}" <bad
 }
 
@@ -105,8 +110,11 @@ edited "${row}s/ [^ ]*\$/ g/" 2 "line $row: column report_idle is 'g', not 1 dig
 edited "${row}s/ [^ ]*\$/ 2/" 2 "line $row: column report_idle is '2'"
 edited "${row}s/ [^ ]*\$/ 00/" 2 "line $row: column report_idle is '00'"
 edited '8s/ 0 x |/ 1 00000000 |/' 2 'line 8: pixel_valid is 1, but no fragment waits for its pixel'
+# shellcheck disable=SC2016 # sed's last line
 edited '$d' 2 "the last line, 'end NUMBER', is missing"
+# shellcheck disable=SC2016
 edited '$s/.*/end 1/' 2 "it ends after $cycles cycles, but says 1"
+# shellcheck disable=SC2016
 edited '$s/.*/end/' 2 "the last line must be 'end NUMBER'"
 sed '$p' some >bad
 checked 2 'something follows the last line'
@@ -126,7 +134,7 @@ bad 1 'line 7: column blended_known: expected 0, got x' "$vodr" vectors check al
 "$vodr" vectors generate rasterizer --seed 9 >../device
 good 'another seed' "$vodr" vectors check rasterizer <../device
 verdict 'another seed is other vectors' "$(cmp -s ../device "$kept/rasterizer/level1.txt" && echo 'they are the same')"
-for block in $(cd "$kept" && ls -d ./*_* | sed 's|./||; /\./d'); do
+for block in ${headers:+$(sed '/^#/d; s|/.*||' "$kept/list.txt" | sort -u)}; do
     lines=$("$vodr" vectors generate "$block" --level 2 --seed 5 | grep -c '^0 ')
     verdict "level 2 of $block" "$([ "$lines" -ge 1000000 ] || echo "$lines cycles")"
 done

@@ -23,7 +23,7 @@ static void draw(rng *random, vodr_machine *m)
 static vodr_view plain_view(rng *random, const int32_t dims_vox[3])
 {
     int depth = (int)rng_int(random, 0, 2), across = (depth + 1) % 3, down = (depth + 2) % 3;
-    int64_t unit = (int64_t)(rng_one_in(random, 2) ? 1 : -1) << 28;
+    int64_t unit = (rng_one_in(random, 2) ? 1 : -1) * ((int64_t)1 << 28);
     vodr_view v = {.perspective = true, .shift = 8, .footprint = 1 << 20};
     v.width_px = (int32_t)rng_int(random, 1, 40);
     v.height_px = (int32_t)rng_int(random, 1, 40);
