@@ -31,7 +31,7 @@ typedef struct block_ins {
 typedef struct clocked_pipeline {
     volume_divider walk;
     block_setup setup;
-    block_faces faces; /* of several pipelines no frame buffer: they share one */
+    block_faces faces;
     block_outs bank[2];
     block_ins ins[2];
 } clocked_pipeline;
@@ -44,7 +44,7 @@ struct clocked {
     int current; /* the bank that was written last */
     clocked_sums sums;
     clocked_counts *counts;   /* by pipeline */
-    frame_buffer_face shared; /* of several pipelines */
+    frame_buffer_face shared; /* of several pipelines; the first has clock_shared() in its place */
     int32_t count;
     clocked_pipeline pipelines[];
 };
@@ -74,15 +74,23 @@ static void wire(const block_outs *o, block_ins *i)
     i->voxel_memory = (voxel_memory_in){.fetch = &o->texture_unit.fetch};
 }
 
-static void clock_shared(clocked *c)
+/* The frame buffer that several pipelines share, in the first one's place: at once for all. */
+static void clock_shared(void *state, const frame_buffer_in *first_in, frame_buffer_out *first_out)
 {
-    const frame_buffer_in *in[CLOCKED_PIPELINES];
-    frame_buffer_out *out[CLOCKED_PIPELINES];
-    for (int32_t i = 0; i < c->count; i++) {
+    clocked *c = state;
+    const frame_buffer_in *in[CLOCKED_PIPELINES] = {first_in};
+    frame_buffer_out *out[CLOCKED_PIPELINES] = {first_out};
+    for (int32_t i = 1; i < c->count; i++) {
         in[i] = &c->pipelines[i].ins[c->current].frame_buffer;
         out[i] = &c->pipelines[i].bank[!c->current].frame_buffer;
     }
     clocked_frame_buffer_ports(c->shared.state, in, out);
+}
+
+/* In the place of the others'. */
+static void clock_nothing(void *state, const frame_buffer_in *in, frame_buffer_out *out)
+{
+    (void)state, (void)in, (void)out;
 }
 
 static void clock_block(block_faces *f, int block, const block_ins *in, block_outs *out)
@@ -108,18 +116,17 @@ static bool all_idle(const block_outs *o)
            o->frame_buffer.report.idle;
 }
 
+static void clock_pipeline(clocked_pipeline *p, int current, const uint8_t *order)
+{
+    for (int i = 0; i < CLOCKED_BLOCKS; i++)
+        clock_block(&p->faces, order ? order[i] : i, &p->ins[current], &p->bank[!current]);
+}
+
 bool clocked_step(clocked *c, const uint8_t *order)
 {
     bool left = false;
-    for (int i = 0; i < CLOCKED_BLOCKS; i++) {
-        int block = order ? order[i] : i;
-        if (block == VODR_BLOCK_FRAME_BUFFER && c->count > 1) {
-            clock_shared(c);
-            continue;
-        }
-        for (clocked_pipeline *p = c->pipelines; p < c->pipelines + c->count; p++)
-            clock_block(&p->faces, block, &p->ins[c->current], &p->bank[!c->current]);
-    }
+    for (int32_t i = 0; i < c->count; i++)
+        clock_pipeline(&c->pipelines[i], c->current, order);
     for (int32_t i = 0; i < c->count; i++) {
         const block_outs *bank = c->pipelines[i].bank;
         clocked_counts_cycle(&c->counts[i], &bank[c->current], &bank[!c->current]);
@@ -142,6 +149,20 @@ static bool make_blocks(const block_setup *s, block_faces *f, block_outs *o)
            clocked_voxel_memory(s, &f->voxel_memory, &o->voxel_memory);
 }
 
+/* The frame buffer of pipeline i: its own when it is the only one. */
+static bool make_frame_buffer(clocked *c, int32_t i)
+{
+    clocked_pipeline *p = &c->pipelines[i], *first = &c->pipelines[0];
+    if (c->count == 1)
+        return clocked_frame_buffer(&p->setup, &p->faces.frame_buffer, &p->bank[0].frame_buffer);
+    p->faces.frame_buffer = (frame_buffer_face){.clock = clock_nothing};
+    p->bank[0].frame_buffer = first->bank[0].frame_buffer;
+    if (i > 0)
+        return true;
+    p->faces.frame_buffer = (frame_buffer_face){.state = c, .clock = clock_shared};
+    return clocked_frame_buffer(&p->setup, &c->shared, &p->bank[0].frame_buffer);
+}
+
 /* Pipeline i, after the one before it. */
 static vodr_status start_pipeline(clocked *c, int32_t i, const block_setup *setup, const vodr_observer *observer,
                                   vodr_error *error)
@@ -155,9 +176,7 @@ static vodr_status start_pipeline(clocked *c, int32_t i, const block_setup *setu
     if (status != VODR_OK)
         return status;
     volume_divider_deal(&p->walk, c->machine, i);
-    frame_buffer_face *face = c->count > 1 ? &c->shared : &p->faces.frame_buffer;
-    bool made = i > 0 || clocked_frame_buffer(&p->setup, face, &p->bank[0].frame_buffer);
-    p->bank[0].frame_buffer = c->pipelines[0].bank[0].frame_buffer;
+    bool made = make_frame_buffer(c, i);
     made = made && make_blocks(&p->setup, &p->faces, &p->bank[0]);
     made = made && clocked_counts_start(&c->counts[i], c->machine, &p->walk.window, observer, &c->sums);
     for (int b = 0; b < 2; b++)

@@ -14,9 +14,9 @@ typedef struct clocked clocked;
 vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                           const vodr_view *view, const vodr_observer *observer, vodr_error *error);
 
-/* Where the machine's blocks are, and what their outputs hold at reset; of several pipelines those of the first, and no
- * frame buffer. Before the first cycle another block can be put into a face, and its reset values into its outputs;
- * what was there is the caller's then. */
+/* Where the machine's blocks are, and what their outputs hold at reset; of several pipelines those of the first. Before
+ * the first cycle another block can be put into a face, and its reset values into its outputs; what was there is the
+ * caller's then. The frame buffer of several pipelines can be surrounded, not replaced. */
 block_faces *clocked_faces(clocked *c);
 block_outs *clocked_reset(clocked *c);
 
