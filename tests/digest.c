@@ -19,6 +19,7 @@ static bool add_case(uint64_t seed, uint64_t *hash)
         vodr_machine machine = c.machine;
         machine.traversal = traversal;
         case_organise(&c, &machine);
+        case_multiply(&c, &machine);
         const vodr_options options = {.threads = 1 + (int32_t)(seed % 2),
                                       .path = rng_one_in(&c.random, 2) ? VODR_PATH_FAST : VODR_PATH_BLOCKS};
         outcome_draw(&c, &machine, &options, &o);
