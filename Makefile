@@ -12,7 +12,7 @@ SANITIZE ?=
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
 STRICT   := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -ffp-contract=off \
             -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-psabi -Werror
-INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -Irtl -isystem /usr/include/nifti
+INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -Irtl -Ivectors -isystem /usr/include/nifti
 COMPILE   = $(CC) $(STRICT) $(CFLAGS) $(SANITIZE) $(INCLUDES) -pthread -MMD -MP
 REFERENCE_MATHS := -fno-math-errno -fno-trapping-math # lanes take square roots side by side; no result changes
 
@@ -32,6 +32,7 @@ CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vod
 HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
             $(BUILD)/gen/energy_text.o
 RTL      := $(patsubst %.c,$(BUILD)/%.o,$(wildcard rtl/*.c))
+VECTORS  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard vectors/*.c))
 REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
              $(BUILD)/reference/$(if $(NVCC),device_cuda.o,device_no_cuda.o)
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
@@ -48,7 +49,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long findings contact-sheet crosscheck fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -74,6 +75,10 @@ check-long: ## the same, with 10,000 random cases, 20,000 for the cycles
 	@scripts/deps check fuzz
 	@$(MAKE) -s $(PARALLEL) all tests
 	@scripts/check --long $(BUILD)
+
+vectors: ## write the vectors and golden frames that are kept in vectors/ again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/vodr $(BUILD)/tests/test_frames
+	@scripts/vectors $(BUILD)
 
 cosim-long: ## whole frames of 256^3 in Verilog beside C, a million transactions a block, faults in every block (hours)
 	@scripts/deps rtl check
@@ -201,6 +206,10 @@ $(BUILD)/librtl.a: $(RTL)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/libvectors.a: $(VECTORS)
+	@rm -f $@
+	ar rcs $@ $^
+
 # Where co-simulation finds what it builds libraries of, and keeps them: builds of one tree share theirs.
 WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(if $(filter build/%,$(BUILD)),build,$(BUILD)))"'
 $(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o: STRICT += $(WHERE)
@@ -209,35 +218,36 @@ $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
 	ar rcs $@ $^
 
-$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
 $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
-$(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
 $(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
 	$(NVCC) -o $@ $^
 
-$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(BUILD)/bench/%: $(BUILD)/bench/%.o $(BENCHLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
 LOCKSTEP := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lockstep/*.c))
 $(LOCKSTEP): STRICT += $(WHERE)
 
-$(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
+$(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
 $(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib
 
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
-$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs

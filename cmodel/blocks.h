@@ -105,6 +105,7 @@ typedef struct frame_buffer_out {
     filled_port filled;
     granted_port written;
     loaded_port load;
+    beat_port memory;
     report_port report;
 } frame_buffer_out;
 

@@ -1,6 +1,6 @@
 /* clocked.c - joins the clocked blocks: wires their ports, and clocks them. All that blocks register lies in two banks:
  * of one they see what was registered in the cycle before, into the other they write. So the order in which they are
- * clocked makes no difference. */
+ * clocked makes no difference. A machine of several pipelines has all of them several times, but one frame buffer. */
 #include "clocked.h"
 
 #include <stdlib.h>
@@ -28,18 +28,25 @@ typedef struct block_ins {
     voxel_memory_in voxel_memory;
 } block_ins;
 
-struct clocked {
-    const vodr_machine *machine;
-    const vodr_view *view;
-    texture_unit tables;
+typedef struct clocked_pipeline {
     volume_divider walk;
-    storage storage;
     block_setup setup;
     block_faces faces;
     block_outs bank[2];
     block_ins ins[2];
+} clocked_pipeline;
+
+struct clocked {
+    const vodr_machine *machine;
+    const vodr_view *view;
+    texture_unit tables;
+    storage storage;
     int current; /* the bank that was written last */
-    clocked_counts counts;
+    clocked_sums sums;
+    clocked_counts *counts;   /* by pipeline */
+    frame_buffer_face shared; /* of several pipelines; the first has clock_shared() in its place */
+    int32_t count;
+    clocked_pipeline pipelines[];
 };
 
 /* ---- wires ---- */
@@ -67,6 +74,25 @@ static void wire(const block_outs *o, block_ins *i)
     i->voxel_memory = (voxel_memory_in){.fetch = &o->texture_unit.fetch};
 }
 
+/* The frame buffer that several pipelines share, in the first one's place: at once for all. */
+static void clock_shared(void *state, const frame_buffer_in *first_in, frame_buffer_out *first_out)
+{
+    clocked *c = state;
+    const frame_buffer_in *in[CLOCKED_PIPELINES] = {first_in};
+    frame_buffer_out *out[CLOCKED_PIPELINES] = {first_out};
+    for (int32_t i = 1; i < c->count; i++) {
+        in[i] = &c->pipelines[i].ins[c->current].frame_buffer;
+        out[i] = &c->pipelines[i].bank[!c->current].frame_buffer;
+    }
+    clocked_frame_buffer_ports(c->shared.state, in, out);
+}
+
+/* In the place of the others'. */
+static void clock_nothing(void *state, const frame_buffer_in *in, frame_buffer_out *out)
+{
+    (void)state, (void)in, (void)out;
+}
+
 static void clock_block(block_faces *f, int block, const block_ins *in, block_outs *out)
 {
 #define CLOCK(name) f->name.clock(f->name.state, &in->name, &out->name)
@@ -90,15 +116,24 @@ static bool all_idle(const block_outs *o)
            o->frame_buffer.report.idle;
 }
 
+static void clock_pipeline(clocked_pipeline *p, int current, const uint8_t *order)
+{
+    for (int i = 0; i < CLOCKED_BLOCKS; i++)
+        clock_block(&p->faces, order ? order[i] : i, &p->ins[current], &p->bank[!current]);
+}
+
 bool clocked_step(clocked *c, const uint8_t *order)
 {
-    const block_outs *before = &c->bank[c->current];
-    block_outs *after = &c->bank[!c->current];
-    for (int i = 0; i < CLOCKED_BLOCKS; i++)
-        clock_block(&c->faces, order ? order[i] : i, &c->ins[c->current], after);
-    clocked_counts_cycle(&c->counts, before, after);
+    bool left = false;
+    for (int32_t i = 0; i < c->count; i++)
+        clock_pipeline(&c->pipelines[i], c->current, order);
+    for (int32_t i = 0; i < c->count; i++) {
+        const block_outs *bank = c->pipelines[i].bank;
+        clocked_counts_cycle(&c->counts[i], &bank[c->current], &bank[!c->current]);
+        left |= !all_idle(&bank[!c->current]);
+    }
     c->current = !c->current;
-    return !all_idle(after);
+    return left;
 }
 
 /* ---- start and end ---- */
@@ -111,54 +146,81 @@ static bool make_blocks(const block_setup *s, block_faces *f, block_outs *o)
            clocked_texture_unit(s, &f->texture_unit, &o->texture_unit) &&
            clocked_alpha_blender(s, &f->alpha_blender, &o->alpha_blender) &&
            clocked_pixel_cache(s, &f->pixel_cache, &o->pixel_cache) &&
-           clocked_frame_buffer(s, &f->frame_buffer, &o->frame_buffer) &&
            clocked_voxel_memory(s, &f->voxel_memory, &o->voxel_memory);
+}
+
+/* The frame buffer of pipeline i: its own when it is the only one. */
+static bool make_frame_buffer(clocked *c, int32_t i)
+{
+    clocked_pipeline *p = &c->pipelines[i], *first = &c->pipelines[0];
+    if (c->count == 1)
+        return clocked_frame_buffer(&p->setup, &p->faces.frame_buffer, &p->bank[0].frame_buffer);
+    p->faces.frame_buffer = (frame_buffer_face){.clock = clock_nothing};
+    p->bank[0].frame_buffer = first->bank[0].frame_buffer;
+    if (i > 0)
+        return true;
+    p->faces.frame_buffer = (frame_buffer_face){.state = c, .clock = clock_shared};
+    return clocked_frame_buffer(&p->setup, &c->shared, &p->bank[0].frame_buffer);
+}
+
+/* Pipeline i, after the one before it. */
+static vodr_status start_pipeline(clocked *c, int32_t i, const block_setup *setup, const vodr_observer *observer,
+                                  vodr_error *error)
+{
+    clocked_pipeline *p = &c->pipelines[i];
+    const px_rect window = {0, 0, c->view->width_px, c->view->height_px};
+    p->setup = *setup;
+    p->setup.walk = &p->walk;
+    vodr_status status = volume_divider_start(&p->walk, c->machine, setup->volume, c->view, setup->edge_vox, &window,
+                                              c->tables.transparent_to, error);
+    if (status != VODR_OK)
+        return status;
+    volume_divider_deal(&p->walk, c->machine, i);
+    bool made = make_frame_buffer(c, i);
+    made = made && make_blocks(&p->setup, &p->faces, &p->bank[0]);
+    made = made && clocked_counts_start(&c->counts[i], c->machine, &p->walk.window, observer, &c->sums);
+    for (int b = 0; b < 2; b++)
+        wire(&p->bank[b], &p->ins[b]);
+    return made ? VODR_OK : vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
 }
 
 static vodr_status start(clocked *c, const vodr_volume *volume, const vodr_table *table, const vodr_observer *observer,
                          vodr_error *error)
 {
     const vodr_machine *m = c->machine;
-    const px_rect window = {0, 0, c->view->width_px, c->view->height_px};
     int32_t edge = volume_divider_edge(m, c->view);
-    c->setup = (block_setup){.machine = m,
-                             .view = c->view,
-                             .volume = volume,
-                             .walk = &c->walk,
-                             .tables = &c->tables,
-                             .storage = &c->storage};
+    block_setup setup = {.machine = m, .view = c->view, .volume = volume, .tables = &c->tables, .storage = &c->storage};
     size_t bricks = 1;
     for (int i = 0; i < 3; i++) {
-        c->setup.edge_vox[i] = edge ? edge : volume->dims_vox[i];
-        bricks *= (size_t)ceil_div32(volume->dims_vox[i], c->setup.edge_vox[i]);
+        setup.edge_vox[i] = edge ? edge : volume->dims_vox[i];
+        bricks *= (size_t)ceil_div32(volume->dims_vox[i], setup.edge_vox[i]);
     }
     vodr_status status = texture_unit_start(&c->tables, m, volume, table, c->view, error);
     if (status == VODR_OK && edge)
         status = volume_divider_check(m, volume->dims_vox, edge, error);
-    if (status == VODR_OK)
-        status = volume_divider_start(&c->walk, m, volume, c->view, c->setup.edge_vox, &window,
-                                      c->tables.transparent_to, error);
     if (status != VODR_OK)
         return status;
-    if (!clocked_counts_start(&c->counts, m, c->view, observer, bricks) ||
-        !storage_start(&c->storage, m, c->view, volume, c->setup.edge_vox) ||
-        !make_blocks(&c->setup, &c->faces, &c->bank[0]))
+    c->sums.seen = calloc(bricks, 1);
+    c->counts = calloc((size_t)c->count, sizeof *c->counts);
+    if (!c->sums.seen || !c->counts || !storage_start(&c->storage, m, c->view, volume, setup.edge_vox))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
-    c->counts.n.brick_vox = edge;
-    c->counts.n.skipped_bricks = c->walk.empty_bricks;
-    for (int i = 0; i < 2; i++)
-        wire(&c->bank[i], &c->ins[i]);
-    return VODR_OK;
+    c->sums.n.brick_vox = edge;
+    c->sums.n.tile_px = tile_px(m);
+    for (int32_t i = 0; status == VODR_OK && i < c->count; i++)
+        status = start_pipeline(c, i, &setup, observer, error);
+    c->sums.n.skipped_bricks = c->pipelines[0].walk.empty_bricks;
+    return status;
 }
 
 vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                           const vodr_view *view, const vodr_observer *observer, vodr_error *error)
 {
-    *c = calloc(1, sizeof **c);
+    *c = calloc(1, sizeof **c + (size_t)machine->pipelines * sizeof *(*c)->pipelines);
     if (!*c)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for the clocked machine");
     (*c)->machine = machine;
     (*c)->view = view;
+    (*c)->count = machine->pipelines;
     vodr_status status = start(*c, volume, table, observer, error);
     if (status == VODR_OK)
         return VODR_OK;
@@ -169,27 +231,30 @@ vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_v
 
 block_faces *clocked_faces(clocked *c)
 {
-    return &c->faces;
+    return &c->pipelines[0].faces;
 }
 
 const block_setup *clocked_setup(const clocked *c)
 {
-    return &c->setup;
+    return &c->pipelines[0].setup;
 }
 
 block_outs *clocked_reset(clocked *c)
 {
-    return &c->bank[c->current];
+    return &c->pipelines[0].bank[c->current];
 }
 
 const block_outs *clocked_outs(const clocked *c)
 {
-    return &c->bank[c->current];
+    return &c->pipelines[0].bank[c->current];
 }
 
 double clocked_done(const clocked *c)
 {
-    return volume_divider_done(&c->walk);
+    double done = 0;
+    for (int32_t i = 0; i < c->count; i++)
+        done += volume_divider_done(&c->pipelines[i].walk);
+    return done / c->count;
 }
 
 vodr_status clocked_readout(const clocked *c, vodr_frame *frame, vodr_counters *counters, vodr_error *error)
@@ -202,20 +267,18 @@ vodr_status clocked_readout(const clocked *c, vodr_frame *frame, vodr_counters *
     if (status == VODR_OK)
         status = frame_buffer_readout(&pixels, m, m->blend == VODR_BLEND_MIP ? c->tables.readout : NULL, frame, error);
     frame_buffer_finish(&pixels);
-    clocked_counts counts = c->counts;
-    clocked_counts_close(&counts);
-    if (status == VODR_OK)
-        *counters = counts.n;
-    return status;
+    if (status != VODR_OK)
+        return status;
+    *counters = c->sums.n;
+    counters->cycles = clocked_counts_close(c->counts, c->count);
+    return VODR_OK;
 }
 
-void clocked_free(clocked *c)
+static void free_pipeline(clocked_pipeline *p)
 {
-    if (!c)
-        return;
 #define FINISH(name)                                                                                                   \
-    if (c->faces.name.state && c->faces.name.finish)                                                                   \
-    c->faces.name.finish(c->faces.name.state)
+    if (p->faces.name.state && p->faces.name.finish)                                                                   \
+    p->faces.name.finish(p->faces.name.state)
     FINISH(volume_divider);
     FINISH(slice_generator);
     FINISH(rasterizer);
@@ -225,9 +288,23 @@ void clocked_free(clocked *c)
     FINISH(frame_buffer);
     FINISH(voxel_memory);
 #undef FINISH
-    clocked_counts_finish(&c->counts);
+    volume_divider_finish(&p->walk);
+}
+
+void clocked_free(clocked *c)
+{
+    if (!c)
+        return;
+    for (int32_t i = 0; i < c->count; i++) {
+        free_pipeline(&c->pipelines[i]);
+        if (c->counts)
+            clocked_counts_finish(&c->counts[i]);
+    }
+    if (c->shared.state)
+        c->shared.finish(c->shared.state);
+    free(c->counts);
+    free(c->sums.seen);
     storage_finish(&c->storage);
-    volume_divider_finish(&c->walk);
     texture_unit_finish(&c->tables);
     free(c);
 }

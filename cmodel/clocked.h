@@ -14,8 +14,9 @@ typedef struct clocked clocked;
 vodr_status clocked_start(clocked **c, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                           const vodr_view *view, const vodr_observer *observer, vodr_error *error);
 
-/* Where the machine's blocks are, and what their outputs hold at reset. Before the first cycle another block can be put
- * into a face, and its reset values into its outputs; what was there is the caller's then. */
+/* Where the machine's blocks are, and what their outputs hold at reset; of several pipelines those of the first. Before
+ * the first cycle another block can be put into a face, and its reset values into its outputs; what was there is the
+ * caller's then. The frame buffer of several pipelines can be surrounded, not replaced. */
 block_faces *clocked_faces(clocked *c);
 block_outs *clocked_reset(clocked *c);
 
@@ -26,7 +27,7 @@ const block_setup *clocked_setup(const clocked *c);
  * memory, and makes no difference; NULL: as they stand. False when there was nothing left to do. */
 bool clocked_step(clocked *c, const uint8_t *order);
 
-/* What all blocks registered last. */
+/* What all blocks registered last; of several pipelines, those of the first. */
 const block_outs *clocked_outs(const clocked *c);
 
 /* The share of the bricks that the divider has gone through. */

@@ -6,6 +6,8 @@
 #include "blocks.h"
 #include "storage.h"
 
+enum { CLOCKED_PIPELINES = 16 }; /* the most that parameters allow */
+
 struct volume_divider;
 struct texture_unit;
 
@@ -29,5 +31,9 @@ bool clocked_alpha_blender(const block_setup *setup, alpha_blender_face *face, a
 bool clocked_pixel_cache(const block_setup *setup, pixel_cache_face *face, pixel_cache_out *reset);
 bool clocked_frame_buffer(const block_setup *setup, frame_buffer_face *face, frame_buffer_out *reset);
 bool clocked_voxel_memory(const block_setup *setup, voxel_memory_face *face, voxel_memory_out *reset);
+
+/* A cycle of a frame buffer behind several pipelines: what it sees and registers at the port of each. Its face
+ * serves one alone. */
+void clocked_frame_buffer_ports(void *state, const frame_buffer_in *const in[], frame_buffer_out *const out[]);
 
 #endif

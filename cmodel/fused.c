@@ -79,10 +79,10 @@ static void fail(fused *f, vodr_status status, const vodr_error *error)
 }
 
 /* Told of the calling thread's own progress, in one of its two tasks; all threads go through the same bricks. */
-static void report(const fused *f, const volume_divider *walk)
+static void report(const fused *f, double done)
 {
     if (f->options->progress)
-        f->options->progress(f->options->progress_context, (f->tasks_done + volume_divider_done(walk)) / 2);
+        f->options->progress(f->options->progress_context, (f->tasks_done + done) / 2);
 }
 
 /* Rows that nobody has, or rows that another thread gives away; false when there will be none. Holds the lock. */
@@ -142,7 +142,7 @@ static void draw_band(fused *f, fused_painter *painter, fused_band *band, bool c
         if (atomic_load_explicit(&f->waiting, memory_order_relaxed) > 0)
             share_band(f, band);
         if (calling_thread)
-            report(f, &band->divider);
+            report(f, volume_divider_done(&band->divider));
     }
     fused_band_store(band);
 }
@@ -193,7 +193,7 @@ static int32_t thread_count(const vodr_options *options)
 static void count_frame(fused *f, pipeline *count)
 {
     while (pipeline_step(count))
-        report(f, &count->divider);
+        report(f, pipeline_done(count));
 }
 
 /* The calling thread counts while the others draw, and then draws with them; where counting needs marks, last. */

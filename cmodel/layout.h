@@ -25,13 +25,17 @@ static inline int32_t cache_sets(const vodr_machine *m)
     return m->cache_bytes / (m->ways * line_bytes(m));
 }
 
-/* T: the edge of the largest square whose pixels the cache holds. */
+/* T: the edge of the largest square whose pixels the cache holds. Where tiles of that edge are dealt out to several
+ * pipelines it is made of whole lines, so that no line belongs to two. */
 static inline int32_t tile_px(const vodr_machine *m)
 {
     int32_t pixels = m->cache_bytes / pixel_bytes(m), t = 0;
     while ((t + 1) * (t + 1) <= pixels)
         t++;
-    return t;
+    if (m->pipelines == 1 || m->traversal != VODR_TRAVERSAL_TILE)
+        return t;
+    int32_t line = m->line_px.width > m->line_px.height ? m->line_px.width : m->line_px.height;
+    return t < line ? line : t - t % line;
 }
 
 /* Voxels that a sample needs beyond its brick, on each side. */

@@ -332,6 +332,8 @@ static vodr_status start_blocks(pipeline *p, const vodr_volume *volume, const vo
     if (status == VODR_OK)
         status =
             volume_divider_start(&p->divider, m, volume, p->view, edges, &window, p->texture.transparent_to, error);
+    if (status == VODR_OK)
+        volume_divider_deal(&p->divider, m, p->turn);
     if (status == VODR_OK && p->picture)
         status = texture_unit_reserve(&p->texture, edge, error);
     p->counters.brick_vox = edge;
@@ -382,6 +384,17 @@ static void gather_counters(pipeline *p)
     n->skipped_bricks = p->divider.empty_bricks;
 }
 
+/* The next pipeline's part, before a cache and texture memory of its own; false when all have drawn theirs. */
+static bool take_turn(pipeline *p)
+{
+    if (p->turn + 1 == p->machine->pipelines)
+        return false;
+    pixel_cache_empty(&p->cache);
+    texture_unit_empty(&p->texture);
+    volume_divider_deal(&p->divider, p->machine, ++p->turn);
+    return true;
+}
+
 bool pipeline_step(pipeline *p)
 {
     candidate c;
@@ -391,10 +404,17 @@ bool pipeline_step(pipeline *p)
     }
     p->flushing = true;
     pixel_cache_flush(&p->cache);
+    if (take_turn(p))
+        return true;
     gather_counters(p);
     if (p->clock)
         p->failed = !cycles_finish(p->clock, divider_work(p), &p->counters.cycles);
     return false;
+}
+
+double pipeline_done(const pipeline *p)
+{
+    return (p->turn + volume_divider_done(&p->divider)) / p->machine->pipelines;
 }
 
 vodr_status pipeline_readout(const pipeline *p, vodr_frame *frame, vodr_error *error)

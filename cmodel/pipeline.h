@@ -1,4 +1,5 @@
-/* pipeline.h - the machine's blocks joined, one frame at a time. */
+/* pipeline.h - the machine's blocks joined, one frame at a time. A machine of several pipelines is drawn by one that
+ * takes the part of each in turn: they share no pixel and no line, so their order makes no difference. */
 #ifndef VODR_PIPELINE_H
 #define VODR_PIPELINE_H
 
@@ -14,6 +15,7 @@
 typedef struct pipeline {
     const vodr_machine *machine;
     const vodr_view *view;
+    int32_t turn; /* whose part is drawn */
     bool picture;
     bool lines_only; /* without a picture: all fragments write their pixels, and lines alone matter */
     volume_divider divider;
@@ -37,8 +39,8 @@ typedef struct pipeline {
 
 /* Checks every input and prepares a frame. With `picture` false the walk leaves out densities, colours and pixels and
  * counts what the whole machine counts. In `over` without kill_transparent every fragment writes its pixel, and
- * geometry alone suffices; otherwise it needs the marks of the finished picture. The inputs must outlive the pipeline.
- * Free with pipeline_finish() in either case. */
+ * geometry alone suffices; otherwise it needs the marks of the finished picture. Cycles (`clock`) are those of a
+ * machine of one pipeline. The inputs must outlive the pipeline. Free with pipeline_finish() in either case. */
 vodr_status pipeline_start(pipeline *p, const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                            const vodr_view *view, bool picture, bool clock, vodr_error *error);
 
@@ -47,6 +49,9 @@ vodr_status pipeline_check(const vodr_machine *m, const vodr_volume *volume, con
 
 /* Draws the next candidate of the divider; false when the frame is done, flushed and counted. */
 bool pipeline_step(pipeline *p);
+
+/* How far the frame is, 0 to 1. */
+double pipeline_done(const pipeline *p);
 
 /* The finished frame, where there is a picture. The caller frees it with vodr_frame_free(). */
 vodr_status pipeline_readout(const pipeline *p, vodr_frame *frame, vodr_error *error);

@@ -116,6 +116,16 @@ void pixel_cache_flush(pixel_cache *c)
         write_back(c, &c->lines[i]);
 }
 
+void pixel_cache_empty(pixel_cache *c)
+{
+    for (size_t i = 0; i < (size_t)c->sets * (size_t)c->ways; i++) {
+        if (c->lines[i].number >= 0)
+            c->where[c->lines[i].number] = -1;
+        c->lines[i] = (cache_line){.number = -1};
+    }
+    c->lfsr = LFSR_SEED;
+}
+
 void pixel_cache_finish(pixel_cache *c)
 {
     free(c->lines);

@@ -69,6 +69,9 @@ static inline void pixel_cache_written(pixel_cache *c)
 /* Writes every dirty line back, at the frame's end. */
 void pixel_cache_flush(pixel_cache *c);
 
+/* Forgets every line; what is counted stays. For another pipeline's cache over other lines of the same frame buffer. */
+void pixel_cache_empty(pixel_cache *c);
+
 void pixel_cache_finish(pixel_cache *c);
 
 #endif

@@ -157,4 +157,13 @@ typedef struct granted_port {
     bool valid;
 } granted_port;
 
+/* Strobes, to the memory behind it: a beat is read or written, of so many bytes. In C nobody answers: what was read is
+ * known when the bus is granted. */
+typedef struct beat_port {
+    bool valid, read, write; /* valid: one of the two */
+    int64_t address;
+    int32_t bytes;
+    uint8_t data[PORT_BEAT_BYTES];
+} beat_port;
+
 #endif

@@ -16,7 +16,7 @@ static void report(const vodr_options *options, double done)
 static vodr_status draw_blocks(pipeline *p, const vodr_options *options, vodr_frame *frame, vodr_error *error)
 {
     while (pipeline_step(p))
-        report(options, volume_divider_done(&p->divider));
+        report(options, pipeline_done(p));
     return pipeline_readout(p, frame, error);
 }
 
@@ -29,7 +29,8 @@ vodr_status vodr_render(const vodr_machine *machine, const vodr_volume *volume, 
     *counters = (vodr_counters){0};
     if (!options)
         options = &defaults;
-    if (options->path == VODR_PATH_CLOCKED) {
+    bool several = options->cycles && machine->pipelines != 1; /* what the recurrences do not know */
+    if (several || options->path == VODR_PATH_CLOCKED) {
         vodr_status checked = pipeline_check(machine, volume, view, error);
         return checked == VODR_OK ? clocked_render(machine, volume, table, view, options, frame, counters, error)
                                   : checked;

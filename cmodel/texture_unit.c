@@ -118,6 +118,12 @@ uint64_t texture_unit_load(texture_unit *t, size_t brick, const vox_box *box)
     return (uint64_t)width * (uint64_t)(hi[1] - lo[1]) * (uint64_t)(hi[2] - lo[2]) * (uint64_t)t->voxel_bytes;
 }
 
+void texture_unit_empty(texture_unit *t)
+{
+    for (int i = 0; i < t->buffer_count; i++)
+        t->buffers[i].valid = false;
+}
+
 /* What the fetch stage reads: texture memory, or the volume itself. Indices are inside the region. */
 static inline int32_t fetch(const texture_unit *t, bool whole, int32_t x, int32_t y, int32_t z)
 {

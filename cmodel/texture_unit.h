@@ -43,6 +43,9 @@ vodr_status texture_unit_reserve(texture_unit *t, int32_t edge_vox, vodr_error *
 /* Makes `brick` the current one; returns the bytes loaded, 0 when it was still there or the volume is whole. */
 uint64_t texture_unit_load(texture_unit *t, size_t brick, const vox_box *box);
 
+/* Forgets the bricks that it holds. */
+void texture_unit_empty(texture_unit *t);
+
 /* Bytes that `count` fragments fetch from external memory: 0 unless the volume is drawn whole. */
 uint64_t texture_unit_fetched(const texture_unit *t, int32_t count);
 

@@ -195,14 +195,16 @@ typedef enum vodr_simd {
 } vodr_simd;
 
 /* A brick whose first fragment is about to be drawn: its number (x fastest) and half-open box, and the half-open
- * rectangle of pixels that its fragments are clipped to (a tile, in tile order; else the frame). */
+ * rectangle of pixels that its fragments are clipped to (a tile, in tile order; else the frame, or the pipeline's band
+ * of it). */
 typedef struct vodr_visit {
     uint64_t brick;
     int32_t lo_vox[3], hi_vox[3];
     int32_t x0_px, y0_px, x1_px, y1_px;
 } vodr_visit;
 
-/* Told of events in the machine's own order, all from the calling thread. Either function may be NULL. */
+/* Told of events in the machine's own order, all from the calling thread; those of several pipelines, each in its own
+ * order, come one after the other or mixed. Either function may be NULL. */
 typedef struct vodr_observer {
     void *context;
     void (*visit)(void *context, const vodr_visit *visit);
@@ -214,7 +216,7 @@ typedef struct vodr_options {
     int32_t threads; /* at least 1; 0 = as many as the machine has cores */
     vodr_path path;
     vodr_simd simd;
-    bool cycles; /* count cycles too */
+    bool cycles; /* count cycles too; those of several pipelines are clocked, whatever the path, and take long */
     /* Called now and then from the calling thread with the done share, 0 to 1; NULL for silence. */
     void (*progress)(void *context, double done);
     void *progress_context;

@@ -132,6 +132,7 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
     *d = (volume_divider){.view = view,
                           .projection = projection_of(view, volume->dims_vox),
                           .window = *window,
+                          .tile_step = 1,
                           .setup_cycles = m->brick_setup_cycles};
     size_t total = 1;
     for (int c = 0; c < 3; c++) {
@@ -157,23 +158,31 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
     return VODR_OK;
 }
 
-/* The first or the next tile in row-major order; false after the last. */
+void volume_divider_deal(volume_divider *d, const vodr_machine *m, int32_t pipeline)
+{
+    const int32_t height = d->view->height_px, rows = ceil_div32(height, FB_TILE_PX), count = m->pipelines;
+    d->started = d->left = false;
+    if (d->tile_px) {
+        d->tile_first = pipeline;
+        d->tile_step = count;
+        return;
+    }
+    int32_t end = (pipeline + 1) * rows / count * FB_TILE_PX;
+    d->window.y1 = end < height ? end : height;
+    d->window.y0 = pipeline * rows / count * FB_TILE_PX;
+}
+
+/* The first or the next of the tiles that are drawn, in row-major order; false after the last. */
 static bool next_tile(volume_divider *d)
 {
     const px_rect *w = &d->window;
     int32_t width = d->tile_px ? d->tile_px : w->x1 - w->x0, height = d->tile_px ? d->tile_px : w->y1 - w->y0;
-    int32_t x = w->x0, y = w->y0;
-    if (d->started) {
-        x = d->tile.x0 + width;
-        y = d->tile.y0;
-        if (x >= w->x1) {
-            x = w->x0;
-            y += height;
-        }
-    }
+    int32_t number = d->started ? d->tile_at + d->tile_step : d->tile_first, columns = ceil_div32(w->x1 - w->x0, width);
+    int32_t x = w->x0 + number % columns * width, y = w->y0 + number / columns * height;
     if (y >= w->y1)
         return false;
     d->started = true;
+    d->tile_at = number;
     d->tile = (px_rect){x, y, x + width < w->x1 ? x + width : w->x1, y + height < w->y1 ? y + height : w->y1};
     d->at[0] = d->at[1] = d->at[2] = 0;
     return true;
@@ -281,8 +290,7 @@ double volume_divider_done(const volume_divider *d)
         return inner;
     const px_rect *w = &d->window;
     double rows = ceil_div32(w->y1 - w->y0, d->tile_px), columns = ceil_div32(w->x1 - w->x0, d->tile_px);
-    int32_t row = (d->tile.y0 - w->y0) / d->tile_px, column = (d->tile.x0 - w->x0) / d->tile_px;
-    return (row * columns + column + inner) / (rows * columns);
+    return (d->tile_at + inner) / (rows * columns);
 }
 
 void volume_divider_finish(volume_divider *d)

@@ -28,6 +28,9 @@ typedef struct volume_divider {
     uint8_t *empty;      /* by brick number; NULL unless skip_empty */
     uint64_t empty_bricks;
     int32_t tile_px;    /* edge of a screen tile; 0 when the window is not cut */
+    int32_t tile_first; /* of all tiles, row by row, the first that is drawn, */
+    int32_t tile_step;  /* and from one to the next */
+    int32_t tile_at;    /* number of the current one */
     px_rect tile;       /* the current one, or the whole window */
     px_rect window;     /* the part of the frame that is drawn */
     int32_t at[3];      /* loop counters, outermost first */
@@ -49,6 +52,10 @@ vodr_status volume_divider_check(const vodr_machine *m, const int32_t dims_vox[3
 vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const vodr_volume *volume,
                                  const vodr_view *view, const int32_t edge_vox[3], const px_rect *window,
                                  const int32_t *transparent_to, vodr_error *error);
+
+/* Begins the walk, whose window is the frame, anew over the share of one of the machine's pipelines: some of the tiles,
+ * else a band of the frame, which may be empty. */
+void volume_divider_deal(volume_divider *d, const vodr_machine *m, int32_t pipeline);
 
 /* The index that axis c is walked towards from both ends, and visited last; in `under` it is the first. In perspective
  * that of the eye's brick or, where the eye is beyond the volume, of the nearest; in parallel views that of the nearest

@@ -99,6 +99,16 @@ static void count_bits(costs *c, const vodr_machine *m, const vodr_view *v)
     c->touch_bits = m->clear_on_first_touch ? frame_lines(m, v) : 0;
 }
 
+/* Every pipeline has its own; of the bits of touch each has those of its lines. */
+static void multiply_bits(costs *c, uint64_t pipelines)
+{
+    c->cache_data_bits *= pipelines;
+    c->cache_tag_bits *= pipelines;
+    c->texture_bits *= pipelines;
+    c->table_bits *= pipelines;
+    c->fifo_bits *= pipelines;
+}
+
 /* Moving so many bytes in or out of an on-chip memory of so many bits. */
 static double sram_pj(const energy_table *e, double bytes, uint64_t capacity_bits)
 {
@@ -161,7 +171,8 @@ costs costs_of(const vodr_machine *machine, const vodr_view *view, const vodr_co
     costs c = {.fb_bytes = counters->fb_read_bytes + counters->fb_write_bytes,
                .texture_bytes = counters->texture_load_bytes};
     count_bits(&c, machine, view);
-    count_energy(&c, machine, view, counters, energy);
+    count_energy(&c, machine, view, counters, energy); /* an access costs what one pipeline's memory does */
+    multiply_bits(&c, (uint64_t)machine->pipelines);
     return c;
 }
 

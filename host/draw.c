@@ -17,14 +17,19 @@ double draw_median(double *times, int count)
     return (times[(count - 1) / 2] + times[count / 2]) / 2;
 }
 
-static host_status draw_cosim(const scene *s, const vodr_machine *machine, const vodr_options *how,
-                              const cosim_options *cosim, result *r, host_error *error)
+static host_status of_rtl(rtl_status status, const vodr_error *reason, host_error *error)
 {
     static const host_status of[] = {[RTL_OK] = HOST_OK,
                                      [RTL_DIFFERS] = HOST_DIFFERENT,
                                      [RTL_INVALID] = HOST_BAD_INPUT,
                                      [RTL_NO_MEMORY] = HOST_ENVIRONMENT,
                                      [RTL_ENVIRONMENT] = HOST_ENVIRONMENT};
+    return status == RTL_OK ? HOST_OK : host_fail(error, of[status], "%s", reason->text);
+}
+
+static host_status draw_cosim(const scene *s, const vodr_machine *machine, const vodr_options *how,
+                              const cosim_options *cosim, result *r, host_error *error)
+{
     vodr_error reason;
     cosim_options options = *cosim;
     options.progress = how->progress;
@@ -32,7 +37,16 @@ static host_status draw_cosim(const scene *s, const vodr_machine *machine, const
     options.observer = how->observer;
     rtl_status status =
         cosim_render(machine, &s->densities, &s->table, &s->view, &options, &r->frame, &r->counters, &reason);
-    return status == RTL_OK ? HOST_OK : host_fail(error, of[status], "%s", reason.text);
+    return of_rtl(status, &reason, error);
+}
+
+/* Building is no part of drawing. */
+static host_status prepare(const scene *s, const vodr_machine *machine, const cosim_options *cosim, host_error *error)
+{
+    vodr_error reason;
+    if (!cosim)
+        return HOST_OK;
+    return of_rtl(cosim_prepare(machine, &s->densities, &s->table, &s->view, cosim, &reason), &reason, error);
 }
 
 static host_status draw_c(const scene *s, const vodr_machine *machine, const vodr_options *how, result *r,
@@ -71,7 +85,7 @@ host_status draw(const scene *s, const vodr_machine *machine, const draw_options
     double *times = malloc((size_t)how->repeat * sizeof *times);
     if (!times)
         return host_fail(error, HOST_ENVIRONMENT, "no memory");
-    host_status status = HOST_OK;
+    host_status status = prepare(s, machine, how->cosim, error);
     for (int i = 0; status == HOST_OK && i < how->repeat; i++)
         status = draw_once(s, machine, &options, how->cosim, r, &times[i], error);
     progress_end(&line);

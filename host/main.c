@@ -7,8 +7,8 @@
 #include "commands.h"
 #include "vodr.h"
 
-static const command *const commands[] = {&command_render,  &command_reference, &command_report, &command_sweep,
-                                          &command_compare, &command_info,      &command_machine};
+static const command *const commands[] = {&command_render,  &command_reference, &command_report,  &command_sweep,
+                                          &command_compare, &command_info,      &command_machine, &command_vectors};
 
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

@@ -37,6 +37,10 @@ static const bound bounds[] = {
 
 rtl_status cosim_check(vodr_block block, const vodr_machine *machine, vodr_error *error)
 {
+    if (machine->pipelines != 1)
+        return rtl_fail(error, RTL_INVALID,
+                        "pipelines=%" PRId32 ": blocks in Verilog take 1 only; the model in C takes it",
+                        machine->pipelines);
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
         const bound *b = &bounds[i];
         int32_t value;

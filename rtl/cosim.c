@@ -231,6 +231,16 @@ static rtl_status tell_hanging(const cosim *c, vodr_error *error)
     return RTL_DIFFERS;
 }
 
+rtl_status cosim_prepare(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
+                         const vodr_view *view, const cosim_options *options, vodr_error *error)
+{
+    const inputs in = {machine, volume, table, view};
+    cosim c;
+    rtl_status status = cosim_open(&c, &in, options, NO_BLOCK, error);
+    cosim_close(&c);
+    return status;
+}
+
 rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                         const vodr_view *view, const cosim_options *options, vodr_frame *frame, vodr_counters *counters,
                         vodr_error *error)

@@ -22,6 +22,10 @@ typedef struct cosim_options {
     const vodr_observer *observer;
 } cosim_options;
 
+/* Builds the libraries that cosim_render() would, where they are not there yet: seconds each. */
+rtl_status cosim_prepare(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
+                         const vodr_view *view, const cosim_options *options, vodr_error *error);
+
 /* As vodr_render(), with counters->cycles. Inputs are those that vodr_render() takes. RTL_DIFFERS: the sentence says
  * cycle, block, port, what was expected and got, and the place in the picture. */
 rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,

@@ -157,7 +157,10 @@ static rtl_status build(const rtl_source *source, const char *module, const char
         free(arguments[i]);
     const char *last = last_line(said);
     if (status == 0) {
-        snprintf(path, size, "%s", last);
+        size_t length = strlen(last);
+        if (length >= size)
+            return rtl_fail(error, RTL_ENVIRONMENT, "%s: the path of its library is too long", module);
+        memcpy(path, last, length + 1);
         return RTL_OK;
     }
     if (status == NOT_RUN)

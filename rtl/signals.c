@@ -93,6 +93,14 @@ static const signal_field writes[] = {ALWAYS(write_port, "write_valid", valid, 1
                                       PART(write_port, "write_data", data, WIDTH_LINE,
                                            (int16_t)offsetof(write_port, valid), (int16_t)offsetof(write_port, bytes))};
 static const signal_field written[] = {ALWAYS(granted_port, "written_valid", valid, 1)};
+static const signal_field memory[] = {
+    ALWAYS(beat_port, "memory_read", read, 1),
+    ALWAYS(beat_port, "memory_write", write, 1),
+    VALID(beat_port, "memory_address", address, 48),
+    FIELD(beat_port, "memory_write_bytes", bytes, 9, (int16_t)offsetof(beat_port, write)),
+    PART(beat_port, "memory_write_data", data, WIDTH_BEAT, (int16_t)offsetof(beat_port, write),
+         (int16_t)offsetof(beat_port, bytes)),
+};
 static const signal_field look_up[] = {
     ALWAYS(look_up_port, "look_up_valid", valid, 1), VALID(look_up_port, "look_up_miss", miss, 1),
     VALID(look_up_port, "look_up_replaced", replaced, 1), VALID(look_up_port, "look_up_x", x, 15),
@@ -171,7 +179,7 @@ static const signal_port pixel_cache[] = {
 static const signal_port frame_buffer[] = {
     IN(frame_buffer, fill, fill),      IN(frame_buffer, writes, write),     IN(frame_buffer, load, load),
     OUT(frame_buffer, filled, filled), OUT(frame_buffer, written, written), OUT(frame_buffer, loaded, load),
-    OUT(frame_buffer, report, report),
+    OUT(frame_buffer, memory, memory), OUT(frame_buffer, report, report),
 };
 
 /* ---- vodr_top ---- */

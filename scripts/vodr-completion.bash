@@ -41,6 +41,11 @@ _vodr_machines() {
     "$1" machine list 2>/dev/null | sed 's/ .*//'
 }
 
+# The blocks that the help of vectors names.
+_vodr_blocks() {
+    "$1" vectors --help 2>/dev/null | tr '\n' ' ' | sed -n 's/.*BLOCK: \([a-z_, ]*\)\..*/\1/p' | tr -s ', ' '\n'
+}
+
 # What may follow option $3 of subcommand $2, given that $4 is typed of it: files where its help names one.
 _vodr_value() {
     case $3 in
@@ -92,6 +97,8 @@ _vodr_candidates() {
         echo --help
     elif [ "$command" = machine ]; then
         if [ $# -eq 3 ]; then printf '%s\n' list show; else _vodr_machines "$program"; fi
+    elif [ "$command" = vectors ]; then
+        if [ $# -eq 3 ]; then printf '%s\n' generate check; else _vodr_blocks "$program"; fi
     else
         compgen -f -- "$current"
     fi

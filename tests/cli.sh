@@ -16,12 +16,12 @@ raw="v.raw --dims 16x8x8"
 
 # ---- help and version ----
 good "vodr --help" "$vodr" --help
-for command in render reference compare machine info sweep; do
+for command in render reference compare machine info sweep vectors; do
     expect "vodr --help names $command" "^  $command " ../out
 done
 good "vodr --version" "$vodr" --version
 expect "vodr --version" '^vodr [0-9]' ../out
-for command in reference compare machine info sweep; do
+for command in reference compare machine info sweep vectors; do
     good "vodr $command --help" "$vodr" $command --help
     expect "vodr $command --help has an example" '^Example' ../out
 done
@@ -246,6 +246,8 @@ refuse path slow Fast ""
         --set dram_trfc_cycles=300 --set dram_refresh_cycles=300
     bad 2 "--set: texture_latency_cycles is '0'" "$vodr" render $raw -o no.png --set texture_latency_cycles=0
     bad 2 "--set: write_fifo is '257'" "$vodr" render $raw -o no.png --set write_fifo=257
+    bad 2 "--set: pipelines is '17'" "$vodr" render $raw -o no.png --set pipelines=17
+    bad 2 "pipelines=2: blocks in Verilog take 1 only" "$vodr" render $raw --rtl pixel_cache --set pipelines=2
     bad 2 "'paper-48'" "$vodr" render $raw -o no.png --machine paper-48
     bad 2 "'./paper-16'" "$vodr" render $raw -o no.png --machine ./paper-16
     bad 2 "'.' is a directory" "$vodr" render $raw -o no.png --machine .

@@ -53,6 +53,9 @@ values() { # PARAMETER
     offers 'render volume.nrrd --machine ' $machines volume.nrrd
     offers 'machine ' list show
     offers 'machine show ' $machines
+    offers 'vectors ' generate check
+    offers 'vectors generate ' volume_divider slice_generator rasterizer texture_unit alpha_blender pixel_cache frame_buffer
+    offers 'vectors check pix' pixel_cache
     offers 'render --set ' $parameters
     offers 'report volume.nrrd --set=' $parameters
     offers 'sweep volume.nrrd --over ' $axes $parameters

@@ -62,6 +62,19 @@ over='--over line_px=16x1,4x4 --over cache_bytes=512,1024,4096 --over view=orbit
     expect "nothing is drawn twice" '^points  *54, 54 of them' ../out
     verdict "the file is left alone" "$(find full.csv -newer before.csv)"
 }
+
+# ---- pipelines ----
+# shellcheck disable=SC2086
+{
+    good "one to four pipelines" "$vodr" sweep $raw --size 64x128 --zoom 8 --over pipelines=1,2,4 --cycles -o several.csv
+    good "four by render" "$vodr" render $raw --size 64x128 --zoom 8 --set pipelines=4 --cycles --stats four.json
+    verdict "one frame" "$([ "$(column frame_sha256 several.csv | uniq | grep -c .)" -eq 1 ] || column frame_sha256 several.csv)"
+    verdict "as much memory on the chip as there are pipelines" "$(column onchip_bits several.csv | awk '
+        NR == 1 { one = $1 } $1 != one * 2 ^ (NR - 1) { print } END { if (NR != 3) print NR " rows" }')"
+    verdict "ever fewer cycles" "$(column cycles several.csv | awk 'NR > 1 && $1 >= last { print } { last = $1 }')"
+    want=$(sed -n '/"cycles": {/,$s/^ *"total": \([0-9]*\).*/\1/p' four.json | head -n 1)
+    equal "cycles are render's" "$(column cycles several.csv | tail -n 1)" "$want"
+}
 head -c 512 v.raw >x.raw
 printf 'volume   view   slices  # not a comment here\n' >bad.list
 printf '# points\nview line_px tf\n0,0 16x1 ramp\n\n30,-20.5\t4x4   bone\n' >points.list

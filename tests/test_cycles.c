@@ -1,5 +1,6 @@
 /* test_cycles.c - cycles from recurrences against the machine with every block clocked: the same total, the same busy,
  * stalled and idle of each block, the same stalls of each cause, and the same frame and counters, on random machines.
+ * The recurrences are of one pipeline; several are held against them where they cannot meet at the bus.
  * Arguments: [CASES [FIRST_SEED]]; a failing case is drawn again by `test_cycles 1 SEED`. */
 #include <inttypes.h>
 #include <setjmp.h>
@@ -64,6 +65,21 @@ static bool add_up(FILE *file, const vodr_machine *m, const vodr_cycles *c)
     return good;
 }
 
+static void random_machine(test_case *c, vodr_machine *m)
+{
+    *m = c->machine;
+    case_organise(c, m);
+    m->traversal = (int32_t)rng_int(&c->random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_TILE);
+    case_time(c, m);
+}
+
+static bool tell(FILE *file, const test_case *c, const vodr_machine *m, const outcome *o)
+{
+    fprintf(file, "%s%s\n", o->status == VODR_OK ? "" : "  not drawn: ", o->error.text);
+    case_print(file, c, m);
+    return false;
+}
+
 static bool agree(test_case *c, FILE *file)
 {
     static const vodr_options programs[] = {
@@ -72,10 +88,8 @@ static bool agree(test_case *c, FILE *file)
         {.threads = 2, .path = VODR_PATH_FAST, .cycles = true},
     };
     const vodr_options truth = {.threads = 1, .path = VODR_PATH_CLOCKED, .cycles = true};
-    vodr_machine machine = c->machine;
-    case_organise(c, &machine);
-    machine.traversal = (int32_t)rng_int(&c->random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_TILE);
-    case_time(c, &machine);
+    vodr_machine machine;
+    random_machine(c, &machine);
     outcome clocked;
     outcome_draw(c, &machine, &truth, &clocked);
     bool good = clocked.status == VODR_OK && add_up(file, &machine, &clocked.counters.cycles);
@@ -90,10 +104,7 @@ static bool agree(test_case *c, FILE *file)
             fprintf(file, "  threads %d, path %d\n", programs[i].threads, programs[i].path);
         }
     }
-    if (!good) {
-        fprintf(file, "%s%s\n", clocked.status == VODR_OK ? "" : "  not drawn: ", clocked.error.text);
-        case_print(file, c, &machine);
-    }
+    good = good || tell(file, c, &machine, &clocked);
     outcome_free(&clocked);
     return good;
 }
@@ -103,12 +114,144 @@ static void test_random_machines(void **state)
     assert_int_equal(suite_run(*state, agree), 0);
 }
 
+/* ---- several pipelines ---- */
+
+/* Frame and counters of several pipelines, with cycles and without. */
+static bool several_agree(test_case *c, FILE *file)
+{
+    static const vodr_options programs[] = {
+        {.threads = 1, .path = VODR_PATH_BLOCKS},
+        {.threads = 1, .path = VODR_PATH_FAST},
+        {.threads = 2, .path = VODR_PATH_FAST, .cycles = true},
+    };
+    const vodr_options truth = {.threads = 1, .path = VODR_PATH_CLOCKED, .cycles = true};
+    vodr_machine machine;
+    random_machine(c, &machine);
+    machine.pipelines = (int32_t)rng_int(&c->random, 2, 5);
+    outcome clocked;
+    outcome_draw(c, &machine, &truth, &clocked);
+    bool good = clocked.status == VODR_OK && add_up(file, &machine, &clocked.counters.cycles);
+    for (size_t i = 0; good && i < sizeof programs / sizeof *programs; i++) {
+        outcome other;
+        outcome_draw(c, &machine, &programs[i], &other);
+        good = !programs[i].cycles || same_cycles(file, &clocked.counters.cycles, &other.counters.cycles);
+        good &= outcome_same_frame(file, &clocked, &other);
+        good &= outcome_same_counters(file, &clocked, &other);
+        outcome_free(&other);
+    }
+    good = good || tell(file, c, &machine, &clocked);
+    outcome_free(&clocked);
+    return good;
+}
+
+static void test_several_pipelines(void **state)
+{
+    assert_int_equal(suite_run(*state, several_agree), 0);
+}
+
+/* A frame of at most 32 rows is the last pipeline's alone, which takes the cycles that it takes without the others. */
+static bool idle_ones_do_nothing(test_case *c, FILE *file)
+{
+    const vodr_options options = {.threads = 1, .cycles = true};
+    vodr_machine machine;
+    random_machine(c, &machine);
+    machine.traversal = (int32_t)rng_int(&c->random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_COLUMN);
+    c->view.height_px = c->view.height_px < 32 ? c->view.height_px : 32;
+    outcome alone, among;
+    outcome_draw(c, &machine, &options, &alone);
+    machine.pipelines = (int32_t)rng_int(&c->random, 2, 5);
+    outcome_draw(c, &machine, &options, &among);
+    bool good = alone.status == VODR_OK && same_cycles(file, &among.counters.cycles, &alone.counters.cycles);
+    good = good && outcome_same_counters(file, &among, &alone) && outcome_same_frame(file, &among, &alone);
+    good = good || tell(file, c, &machine, &among);
+    outcome_free(&alone);
+    outcome_free(&among);
+    return good;
+}
+
+static void test_idle_pipelines(void **state)
+{
+    assert_int_equal(suite_run(*state, idle_ones_do_nothing), 0);
+}
+
+/* The rows of a frame from y0_px up to y1_px as a frame of their own. */
+static vodr_view band_of(const vodr_view *v, int32_t y0_px, int32_t y1_px)
+{
+    vodr_view band = *v;
+    band.height_px = y1_px - y0_px;
+    for (int i = 0; i < 3; i++) {
+        band.base[i] += y0_px * v->step_v[i];
+    }
+    return band;
+}
+
+/* Where no pipeline needs the bus, undivided and with nothing to be seen, the frame takes the cycles of the band that
+ * takes the most, and the accounts are those of the first of these. */
+static bool bands_are_frames(test_case *c, FILE *file)
+{
+    const vodr_options options = {.threads = 1, .cycles = true};
+    const vodr_view view = c->view;
+    vodr_machine machine;
+    random_machine(c, &machine);
+    machine.traversal = VODR_TRAVERSAL_WHOLE;
+    machine.kill_transparent = 1;
+    machine.skip_empty = 0;
+    for (size_t i = 0; i < c->table.count; i++) {
+        c->entries[i] = (vodr_rgba){0};
+    }
+    outcome whole, band;
+    const int32_t pipelines = (int32_t)rng_int(&c->random, 2, 4), rows = (view.height_px + 31) / 32;
+    machine.pipelines = pipelines;
+    outcome_draw(c, &machine, &options, &whole);
+    machine.pipelines = 1;
+    vodr_cycles longest = {0};
+    uint64_t fragments = 0;
+    bool good = whole.status == VODR_OK;
+    for (int32_t i = 0; good && i < pipelines; i++) {
+        int32_t y0_px = i * rows / pipelines * 32, end_px = (i + 1) * rows / pipelines * 32;
+        int32_t y1_px = end_px < view.height_px ? end_px : view.height_px;
+        if (y0_px == y1_px) {
+            continue;
+        }
+        c->view = band_of(&view, y0_px, y1_px);
+        outcome_draw(c, &machine, &options, &band);
+        good = band.status == VODR_OK;
+        fragments += band.counters.fragments;
+        if (band.counters.cycles.total > longest.total) {
+            longest = band.counters.cycles;
+        }
+        outcome_free(&band);
+    }
+    c->view = view;
+    good = good && same_cycles(file, &whole.counters.cycles, &longest) &&
+           same(file, "fragments", "of all bands", whole.counters.fragments, fragments);
+    good = good || tell(file, c, &machine, &whole);
+    outcome_free(&whole);
+    return good;
+}
+
+/* In perspective the divider reckons its bounds from the middle of the frame, which a band has elsewhere. */
+static bool parallel_bands_are_frames(test_case *c, FILE *file)
+{
+    return c->view.perspective || bands_are_frames(c, file);
+}
+
+static void test_bands(void **state)
+{
+    assert_int_equal(suite_run(*state, parallel_bands_are_frames), 0);
+}
+
 int main(int argc, char **argv)
 {
     suite options;
     if (!suite_options(argc, argv, &options)) {
         return 2;
     }
-    const struct CMUnitTest tests[] = {cmocka_unit_test_prestate(test_random_machines, &options)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_prestate(test_random_machines, &options),
+        cmocka_unit_test_prestate(test_several_pipelines, &options),
+        cmocka_unit_test_prestate(test_idle_pipelines, &options),
+        cmocka_unit_test_prestate(test_bands, &options),
+    };
     return cmocka_run_group_tests_name("cycles", tests, NULL, NULL) == 0 ? 0 : 1;
 }

@@ -26,7 +26,7 @@ static bool cache_counters_hold(FILE *file, const vodr_machine *m, const vodr_co
 {
     uint64_t pixel_bytes = (uint64_t)m->fb_bits / 2;
     uint64_t line_bytes = (uint64_t)(m->line_px.width * m->line_px.height) * pixel_bytes;
-    uint64_t lines = (uint64_t)m->cache_bytes / line_bytes;
+    uint64_t lines = (uint64_t)m->cache_bytes / line_bytes * (uint64_t)m->pipelines;
     uint64_t accesses = n->fragments - n->killed_fragments;
     uint64_t written = accesses - n->terminated_fragments;
     bool good = HOLDS(n->hits + n->misses == accesses);
@@ -54,7 +54,8 @@ static bool brick_counters_hold(FILE *file, const vodr_machine *m, const vodr_co
     bool good = HOLDS(n->bricks <= n->brick_visits && n->brick_visits <= n->brick_slices);
     good &= HOLDS(n->brick_slices <= n->fragments);
     good &= HOLDS((n->fragments > 0) == (n->bricks > 0));
-    good &= HOLDS(tile || n->bricks == n->brick_visits);
+    good &= HOLDS(tile || m->pipelines > 1 || n->bricks == n->brick_visits);
+    good &= HOLDS(tile || n->brick_visits <= n->bricks * (uint64_t)m->pipelines);
     good &= HOLDS(!whole || n->bricks + n->skipped_bricks <= 1);
     good &= HOLDS(!(whole || tile) || n->brick_overflows == 0);
     good &= HOLDS(n->brick_overflows <= n->brick_visits);
@@ -118,6 +119,7 @@ static bool division_changes_nothing(test_case *c, FILE *file)
         machines[i] = c->machine;
         machines[i].traversal = i % 4;
         case_organise(c, &machines[i]);
+        case_multiply(c, &machines[i]);
         good = draw_steadily(file, c, &machines[i], &outcomes[i]);
         for (int j = 0; good && j < i; j++) {
             good = outcome_same_frame(file, &outcomes[i], &outcomes[j]);
@@ -143,6 +145,7 @@ static bool tile_order_is_compulsory(test_case *c, FILE *file)
     tile.cache_bytes = 32 * 32 * (c->machine.fb_bits / 2);
     tile.kill_transparent = (int32_t)rng_int(&c->random, 0, 1);
     tile.replacement = (int32_t)rng_int(&c->random, VODR_REPLACEMENT_LRU, VODR_REPLACEMENT_FIFO);
+    case_multiply(c, &tile);
     vodr_machine ample = tile;
     ample.traversal = VODR_TRAVERSAL_WHOLE;
     ample.cache_bytes = 1 << 20;

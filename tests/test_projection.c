@@ -80,7 +80,7 @@ static void small_frames(void **state)
         volume geometry = unit_volume(dims[0], dims[1], dims[2]);
         bool perspective = rng_one_in(&c, 2);
         vodr_view v =
-            rng_one_in(&c, 2) ? unit_camera_view(&c, &geometry, perspective) : unit_wild_view(&c, dims, perspective);
+            rng_one_in(&c, 2) ? unit_camera_view(&c, &geometry, perspective) : views_wild(&c, dims, perspective);
         int64_t(*positions)[3] = all_positions(&v);
         for (int n = 0; n < 12; n++) {
             vox_box box = random_box(&c, dims);
@@ -101,7 +101,7 @@ static void small_frames(void **state)
 static vodr_view extreme_view(rng *c, const int32_t dims[3], bool perspective)
 {
     for (;;) {
-        vodr_view v = unit_wild_view(c, dims, perspective);
+        vodr_view v = views_wild(c, dims, perspective);
         v.width_px = (int32_t)rng_int(c, 1, VODR_MAX_SIZE_PX);
         v.height_px = (int32_t)rng_int(c, 1, VODR_MAX_SIZE_PX);
         v.slices = (int32_t)rng_int(c, 1, VODR_MAX_SLICES);
@@ -114,7 +114,7 @@ static vodr_view extreme_view(rng *c, const int32_t dims[3], bool perspective)
             v.step_u[i] >>= fine;
             v.step_v[i] >>= fine;
             if (rng_one_in(c, 2))
-                v.step_v[i] = 3 * v.step_u[i] + unit_signed(c, 12);
+                v.step_v[i] = 3 * v.step_u[i] + rng_signed(c, 12);
         }
         for (int i = 0; i < 3 && flat; i++)
             v.step_s[i] = v.step_u[i] + v.step_v[i] + noise * rng_int(c, -1, 1);
@@ -127,7 +127,7 @@ static vodr_view extreme_view(rng *c, const int32_t dims[3], bool perspective)
 static int64_t long_step(rng *c, int bits, bool any)
 {
     int64_t limit = (int64_t)1 << bits, step = limit - rng_int(c, 1, limit / 4);
-    return any ? unit_signed(c, bits) : rng_one_in(c, 2) ? step : -step;
+    return any ? rng_signed(c, bits) : rng_one_in(c, 2) ? step : -step;
 }
 
 /* Frames of one pixel and one slice say nothing about their steps: these are as long as the inverse takes, and longer.
@@ -135,14 +135,14 @@ static int64_t long_step(rng *c, int bits, bool any)
 static vodr_view single_sample_view(rng *c, const int32_t dims[3], bool perspective)
 {
     for (;;) {
-        vodr_view v = unit_wild_view(c, dims, perspective);
+        vodr_view v = views_wild(c, dims, perspective);
         bool any = rng_one_in(c, 2);
         int bits = (int)rng_int(c, 40, 43);
         v.width_px = v.height_px = v.slices = 1;
         if (perspective)
             v.depth_first = rng_int(c, 1, 3) << 16;
         for (int i = 0; i < 3; i++) {
-            v.base[i] = unit_signed(c, 42);
+            v.base[i] = rng_signed(c, 42);
             v.step_u[i] = long_step(c, bits, any);
             v.step_v[i] = long_step(c, bits, any);
             v.step_s[i] = long_step(c, bits, any);

@@ -23,9 +23,9 @@ static void random_plane(rng *c, int c3, int32_t width, int32_t height, slice_pl
 {
     for (;;) {
         int bits = (int)rng_int(c, 6, 62);
-        p->origin[c3] = unit_signed(c, bits);
-        p->step_u[c3] = rng_one_in(c, 6) ? 0 : unit_signed(c, bits - (int)rng_int(c, 0, 5));
-        p->step_v[c3] = rng_one_in(c, 6) ? 0 : unit_signed(c, bits - (int)rng_int(c, 0, 5));
+        p->origin[c3] = rng_signed(c, bits);
+        p->step_u[c3] = rng_one_in(c, 6) ? 0 : rng_signed(c, bits - (int)rng_int(c, 0, 5));
+        p->step_v[c3] = rng_one_in(c, 6) ? 0 : rng_signed(c, bits - (int)rng_int(c, 0, 5));
         bool ok = fits((wide_int)p->step_u[c3] * (width - 1)) && fits((wide_int)p->step_v[c3] * (height - 1));
         for (int corner = 0; corner < 4; corner++)
             ok = ok && fits(numerator(p, c3, corner & 1 ? width - 1 : 0, corner & 2 ? height - 1 : 0));
@@ -38,7 +38,7 @@ static void random_plane(rng *c, int c3, int32_t width, int32_t height, slice_pl
 static int64_t random_border(rng *c, const slice_plane *p, int c3, int32_t width, int32_t height)
 {
     if (rng_one_in(c, 5))
-        return unit_signed(c, 62);
+        return rng_signed(c, 62);
     wide_int a = numerator(p, c3, (int32_t)rng_int(c, 0, width - 1), (int32_t)rng_int(c, 0, height - 1));
     a += rng_int(c, -1, 1);
     return fits(a) ? (int64_t)a : limit - 1;

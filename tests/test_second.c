@@ -20,6 +20,7 @@ static bool agree(test_case *c, FILE *file)
     if (rng_one_in(&c->random, 8)) {
         case_spoil(c, &machine);
     }
+    case_multiply(c, &machine);
     outcome second = {0};
     second.status = second_render(&machine, &c->input, &c->table, &c->view, &second.frame, &second.counters);
     bool same = true;

@@ -29,7 +29,7 @@ static void slices_of_random_boxes(void **state)
         volume geometry = unit_volume(dims[0], dims[1], dims[2]);
         bool perspective = rng_one_in(&c, 2), front_to_back = rng_one_in(&c, 2);
         vodr_view v =
-            rng_one_in(&c, 2) ? unit_camera_view(&c, &geometry, perspective) : unit_wild_view(&c, dims, perspective);
+            rng_one_in(&c, 2) ? unit_camera_view(&c, &geometry, perspective) : views_wild(&c, dims, perspective);
         vox_box box;
         for (int i = 0; i < 3; i++) {
             box.lo[i] = (int32_t)rng_int(&c, 0, dims[i] - 1);

@@ -205,6 +205,13 @@ static void test_bits(void **state)
     assert_int_equal(c.texture_bits, 0);
     assert_int_equal(c.touch_bits, 400);
     assert_int_equal(c.fifo_bits, (32 + 10 + 5) * 77 + 2 * 9 + 3 * 77);
+    m.pipelines = 3;
+    c = costs_of(&m, &v, &none, &e);
+    assert_int_equal(c.cache_data_bits, 3 * 32768);
+    assert_int_equal(c.cache_tag_bits, 3 * (32 * (4 + 1) + 16));
+    assert_int_equal(c.table_bits, 3 * 256 * 64);
+    assert_int_equal(c.touch_bits, 400);
+    assert_int_equal(c.fifo_bits, 3 * ((32 + 10 + 5) * 77 + 2 * 9 + 3 * 77));
 }
 
 static void test_energy(void **state)
@@ -218,7 +225,7 @@ static void test_energy(void **state)
                              .fb_read_bytes = 640,
                              .fb_write_bytes = 320,
                              .texture_load_bytes = 800};
-    const vodr_machine m = unit_machine("cache_bytes=8192 texture_memory_bytes=32768 ways=4 line_px=16x1");
+    vodr_machine m = unit_machine("cache_bytes=8192 texture_memory_bytes=32768 ways=4 line_px=16x1");
     energy_table e = table_of("# only memory\nadd|0\n multiply | 0\nsram_word | 8 | x\ndram_byte|2\n");
     costs c = costs_of(&m, &v, &n, &e);
     assert_int_equal(costs_offchip_bytes(&c), 1760);
@@ -228,6 +235,9 @@ static void test_energy(void **state)
     assert_true(c.texture_pj == 2 * (800 + 800));
     assert_true(fabs(c.table_pj - 400 * sqrt(1024.0 / 8192)) < 1e-9);
     assert_true(c.arithmetic_pj == 0);
+    m.pipelines = 4; /* as many accesses, of memories as large */
+    costs four = costs_of(&m, &v, &n, &e);
+    assert_true(costs_energy_pj(&four) == costs_energy_pj(&c) && four.texture_bits == 4 * c.texture_bits);
     e = table_of("add | 8\nmultiply | 0\n");
     c = costs_of(&m, &v, &n, &e);
     /* An addition of n bits is n pJ: 3 positions of 43, 7 interpolations of 2*12; blends of 4*(2*16 + 8). */

@@ -182,10 +182,10 @@ static void accepted_views_fit_everywhere(void **state)
         vodr_view v = round & 1 ? perspective() : parallel();
         v.shift = v.perspective ? (int32_t)rng_int(&c, 0, 30) : 0;
         for (int i = 0; i < 3; i++) {
-            v.base[i] = unit_signed(&c, 44);
-            v.step_u[i] = unit_signed(&c, 64);
-            v.step_v[i] = unit_signed(&c, 64);
-            v.step_s[i] = unit_signed(&c, 64);
+            v.base[i] = rng_signed(&c, 44);
+            v.step_u[i] = rng_signed(&c, 64);
+            v.step_v[i] = rng_signed(&c, 64);
+            v.step_s[i] = rng_signed(&c, 64);
         }
         if (vodr_view_check(&v, dims, NULL) != VODR_OK)
             continue;

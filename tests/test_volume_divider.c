@@ -288,7 +288,7 @@ static walk random_walk(rng *c, bool perspective)
     for (int i = 0; i < 3; i++)
         w.dims[i] = (int32_t)rng_int(c, 1, 40);
     volume geometry = unit_volume(w.dims[0], w.dims[1], w.dims[2]);
-    w.view = rng_one_in(c, 2) ? unit_camera_view(c, &geometry, perspective) : unit_wild_view(c, w.dims, perspective);
+    w.view = rng_one_in(c, 2) ? unit_camera_view(c, &geometry, perspective) : views_wild(c, w.dims, perspective);
     w.machine.traversal = (int32_t)rng_int(c, 0, 3);
     w.machine.blend = rng_one_in(c, 2) ? VODR_BLEND_UNDER : VODR_BLEND_OVER;
     w.machine.cache_bytes = 64 << rng_int(c, 0, 6);

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include "image.h"
+#include "vectors.h"
 
 enum { X = 3, Y = 2, Z = 2, COUNT = X * Y * Z, BYTES = 8 * COUNT };
 
@@ -149,6 +150,32 @@ static void pictures(seeds *s)
     }
 }
 
+/* The beginning of what is generated, and the last line that it then needs. */
+static void vectors(seeds *s)
+{
+    enum { CYCLES = 20 };
+    for (int block = 0; block < VODR_BLOCK_COUNT; block++) {
+        const vectors_choice choice = vectors_choice_default((vodr_block)block);
+        char *text = NULL, name[8];
+        size_t size = 0, cycles = 0;
+        FILE *file = open_memstream(&text, &size);
+        bool good = file && vectors_generate(&choice, file, NULL) == VECTORS_OK;
+        good = file && fclose(file) == 0 && good;
+        char *end = good ? text : NULL;
+        while (end && cycles < CYCLES) {
+            cycles += *end == '0' || *end == '1';
+            end = strchr(end, '\n') + 1;
+        }
+        if (end)
+            sprintf(end, "end %d\n", CYCLES);
+        snprintf(name, sizeof name, "%d", block);
+        if (end)
+            put_text(s, "vectors", name, text);
+        s->failed = s->failed || !end;
+        free(text);
+    }
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -163,6 +190,7 @@ int main(int argc, char **argv)
     nifti(&s, voxels);
     texts(&s);
     pictures(&s);
+    vectors(&s);
     if (s.failed)
         fprintf(stderr, "seeds: cannot write under %s\n", s.directory);
     return s.failed ? 3 : 0;

@@ -145,6 +145,11 @@ void case_time(test_case *c, vodr_machine *m)
     m->dram_refresh_cycles = rng_one_in(r, 3) ? 0 : (int32_t)rng_int(r, m->dram_trfc_cycles + 1, 1500);
 }
 
+void case_multiply(test_case *c, vodr_machine *m)
+{
+    m->pipelines = rng_one_in(&c->random, 2) ? 1 : (int32_t)rng_int(&c->random, 2, 5);
+}
+
 void case_spoil(test_case *c, vodr_machine *m)
 {
     rng *r = &c->random;

@@ -36,6 +36,10 @@ void case_organise(test_case *c, vodr_machine *machine);
  * within frames of some thousand fragments. */
 void case_time(test_case *c, vodr_machine *machine);
 
+/* Gives a machine one to five pipelines, oftenest one. Drawn apart from the rest of the organisation, so that the cases
+ * of one pipeline are the ones they are without it. */
+void case_multiply(test_case *c, vodr_machine *machine);
+
 /* Gives a machine about as much texture memory as its bricks need, or too small a cache: it may not be buildable. */
 void case_spoil(test_case *c, vodr_machine *machine);
 

@@ -8,8 +8,11 @@
 
 __extension__ typedef __int128 wide;
 
-/* A sample inside the volume. Sorted by its first five fields, fragments are in the machine's order. */
+enum { MOST_PIPELINES = 16 };
+
+/* A sample inside the volume. Sorted by its first six fields, fragments are in the machine's order. */
 typedef struct fragment {
+    int32_t pipeline;
     int32_t tile; /* place of its screen tile; 0 where the traversal has none */
     int32_t rank; /* place of its brick in visiting order */
     int32_t step; /* place of its slice */
@@ -33,7 +36,7 @@ typedef struct scene {
     fragment *fragments;
     size_t count;
     second_pixel *pixels;
-    second_cache cache;
+    second_cache caches[MOST_PIPELINES];
 } scene;
 
 static int64_t least(int64_t a, int64_t b)
@@ -59,6 +62,10 @@ static void choose_edge(scene *s)
     int64_t cache_px = m->cache_bytes / (m->fb_bits / 2);
     while ((s->tile_px + 1) * (s->tile_px + 1) <= cache_px) {
         s->tile_px++;
+    }
+    if (m->traversal == VODR_TRAVERSAL_TILE && m->pipelines > 1) {
+        int64_t side = most(m->line_px.width, m->line_px.height);
+        s->tile_px = most(s->tile_px / side * side, side);
     }
     int64_t fitting = 0; /* F */
     for (int64_t side = 1 + 2 * s->border;
@@ -243,6 +250,20 @@ static int64_t holding(const scene *s, int c, int64_t position)
     return -1;
 }
 
+/* Whose part of the screen a pixel lies in. */
+static int32_t pipeline_of(const scene *s, int32_t y, int32_t tile)
+{
+    int64_t count = s->machine->pipelines, rows = (s->view->height_px + 31) / 32;
+    if (s->machine->traversal == VODR_TRAVERSAL_TILE) {
+        return (int32_t)(tile % count);
+    }
+    int32_t p = 0;
+    while (y >= 32 * ((p + 1) * rows / count)) {
+        p++;
+    }
+    return p;
+}
+
 static void add_sample(scene *s, int32_t x, int32_t y, int32_t k)
 {
     int64_t position[3], index[3];
@@ -259,8 +280,10 @@ static void add_sample(scene *s, int32_t x, int32_t y, int32_t k)
     }
     int32_t t = (int32_t)s->tile_px;
     int32_t tiles_x = (s->view->width_px + t - 1) / t;
+    int32_t tile = s->machine->traversal == VODR_TRAVERSAL_TILE ? y / t * tiles_x + x / t : 0;
     s->fragments[s->count++] = (fragment){
-        .tile = s->machine->traversal == VODR_TRAVERSAL_TILE ? y / t * tiles_x + x / t : 0,
+        .pipeline = pipeline_of(s, y, tile),
+        .tile = tile,
         .rank = s->rank[brick],
         .step = s->machine->blend == VODR_BLEND_UNDER ? s->view->slices - 1 - k : k,
         .y = y,
@@ -273,9 +296,9 @@ static void add_sample(scene *s, int32_t x, int32_t y, int32_t k)
 static int by_order(const void *left, const void *right)
 {
     const fragment *a = left, *b = right;
-    const int32_t keys_a[] = {a->tile, a->rank, a->step, a->y, a->x};
-    const int32_t keys_b[] = {b->tile, b->rank, b->step, b->y, b->x};
-    for (int i = 0; i < 5; i++) {
+    const int32_t keys_a[] = {a->pipeline, a->tile, a->rank, a->step, a->y, a->x};
+    const int32_t keys_b[] = {b->pipeline, b->tile, b->rank, b->step, b->y, b->x};
+    for (int i = 0; i < 6; i++) {
         if (keys_a[i] != keys_b[i]) {
             return keys_a[i] < keys_b[i] ? -1 : 1;
         }
@@ -319,13 +342,18 @@ static vodr_status count_visits(const scene *s)
     bool whole = s->machine->traversal == VODR_TRAVERSAL_WHOLE;
     bool *seen = calloc((size_t)(s->bricks[0] * s->bricks[1] * s->bricks[2]), sizeof *seen);
     int32_t held[2] = {-1, -1};
+    int32_t pipeline = 0;
     int previous = 0;
     for (size_t from = 0, to; seen && from < s->count; from = to) {
         const fragment *first = &s->fragments[from];
+        if (first->pipeline != pipeline) {
+            pipeline = first->pipeline;
+            held[0] = held[1] = -1;
+        }
         int32_t lo_x = first->x, hi_x = first->x, lo_y = first->y, hi_y = first->y, step = -1;
         for (to = from; to < s->count; to++) {
             const fragment *f = &s->fragments[to];
-            if (f->tile != first->tile || f->brick != first->brick) {
+            if (f->pipeline != first->pipeline || f->tile != first->tile || f->brick != first->brick) {
                 break;
             }
             lo_x = (int32_t)least(lo_x, f->x);
@@ -362,7 +390,7 @@ static void draw_fragment(scene *s, const fragment *f)
     second_pixel *pixel = &s->pixels[(int64_t)f->y * s->view->width_px + f->x];
     bool written = second_blend(m, s->converted, f->density, pixel, &terminated);
     s->counters->terminated_fragments += terminated;
-    second_cache_access(&s->cache, f->x, f->y, written, s->counters);
+    second_cache_access(&s->caches[f->pipeline], f->x, f->y, written, s->counters);
 }
 
 static vodr_status read_out(const scene *s, vodr_frame *frame)
@@ -437,7 +465,9 @@ static vodr_status draw(scene *s, vodr_frame *frame)
     for (size_t i = 0; i < s->count; i++) {
         draw_fragment(s, &s->fragments[i]);
     }
-    second_cache_flush(&s->cache, s->counters);
+    for (int i = 0; i < s->machine->pipelines; i++) {
+        second_cache_flush(&s->caches[i], s->counters);
+    }
     return status == VODR_OK ? read_out(s, frame) : status;
 }
 
@@ -455,11 +485,16 @@ vodr_status second_render(const vodr_machine *machine, const vodr_volume *volume
                .density_bytes = machine->density_bits == 8 ? 1 : 2,
                .buffers = 1 + machine->double_buffer};
     choose_edge(&s);
-    vodr_status status = second_cache_make(&s.cache, machine, view->width_px, view->height_px);
+    vodr_status status = VODR_OK;
+    for (int i = 0; status == VODR_OK && i < machine->pipelines; i++) {
+        status = second_cache_make(&s.caches[i], machine, view->width_px, view->height_px);
+    }
     if (status == VODR_OK) {
         status = brick_fits(&s) ? draw(&s, frame) : VODR_INVALID;
     }
-    second_cache_free(&s.cache);
+    for (int i = 0; i < MOST_PIPELINES; i++) {
+        second_cache_free(&s.caches[i]);
+    }
     free(s.converted);
     free(s.rank);
     free(s.skipped);

@@ -2,13 +2,6 @@
 
 #include <string.h>
 
-int64_t unit_signed(rng *c, int bits)
-{
-    int64_t length = rng_int(c, 0, bits);
-    int64_t value = length ? (int64_t)(rng_next(c) >> (64 - length)) : 0;
-    return rng_one_in(c, 2) ? -value : value;
-}
-
 volume unit_volume(int32_t x_vox, int32_t y_vox, int32_t z_vox)
 {
     return (volume){.dims_vox = {x_vox, y_vox, z_vox}, .spacing = {1, 1, 1}, .axis = {0, 1, 2}, .sign = {1, 1, 1}};
@@ -36,40 +29,6 @@ vodr_view unit_camera_view(rng *c, const volume *v, bool perspective)
     if (camera_view(&cam, v, &view, &depth, &error) != HOST_OK)
         fail_msg("%s", error.text);
     return view;
-}
-
-static int64_t wild_step(rng *c, int bits)
-{
-    return rng_one_in(c, 8) ? 0 : unit_signed(c, bits);
-}
-
-vodr_view unit_wild_view(rng *c, const int32_t dims_vox[3], bool perspective)
-{
-    for (;;) {
-        vodr_view v = {.width_px = (int32_t)rng_int(c, 1, 24),
-                       .height_px = (int32_t)rng_int(c, 1, 24),
-                       .slices = (int32_t)rng_int(c, 1, 24),
-                       .perspective = perspective,
-                       .shift = perspective ? (int32_t)rng_int(c, 0, 30) : 0,
-                       .footprint = 1u << rng_int(c, 14, 24)};
-        int depth_bits = (int)rng_int(c, 1, 23), step_bits = 28;
-        if (perspective) {
-            v.depth_first = rng_int(c, 1 << 16, ((int64_t)2 << 16) << depth_bits);
-            v.depth_step = -rng_int(c, 0, (v.depth_first - (1 << 16)) / v.slices);
-            step_bits = 31 + v.shift - depth_bits;
-        }
-        for (int i = 0; i < 3; i++) {
-            v.base[i] = rng_int(c, -((int64_t)dims_vox[i] << 23), (int64_t)dims_vox[i] * 3 << 23);
-            v.base[i] = rng_one_in(c, 4) ? v.base[i] & ~(int64_t)0xFFFFFF : v.base[i];
-            v.step_u[i] = wild_step(c, step_bits - 1);
-            v.step_v[i] = wild_step(c, step_bits - 1);
-            v.step_s[i] = wild_step(c, step_bits);
-        }
-        for (int i = 0; i < 3 && rng_one_in(c, 4); i++)
-            v.step_v[i] = 2 * v.step_u[i]; /* no inverse */
-        if (vodr_view_check(&v, dims_vox, NULL) == VODR_OK)
-            return v;
-    }
 }
 
 static wide_int floor_shift(wide_int a, int bits)

@@ -12,21 +12,16 @@
 
 #include "camera.h"
 #include "rng.h"
+#include "views.h"
 #include "vodr.h"
 
 __extension__ typedef __int128 wide_int;
-
-/* A number of either sign whose magnitude has at most `bits` bits: all lengths are equally likely. */
-int64_t unit_signed(rng *c, int bits);
 
 /* What camera_view() reads of a volume: unit spacing, file axes as they are. */
 volume unit_volume(int32_t x_vox, int32_t y_vox, int32_t z_vox);
 
 /* A view of the volume through the camera: random angles, size and zoom; the volume fills a good part of it. */
 vodr_view unit_camera_view(rng *c, const volume *v, bool perspective);
-
-/* Registers that the check accepts and no camera would write: skewed, degenerate, far off, coarse or fine. */
-vodr_view unit_wild_view(rng *c, const int32_t dims_vox[3], bool perspective);
 
 /* Where pixel (x, y) of slice k samples, by docs/architecture.md, section 2, in integers that cannot overflow. */
 void unit_position(const vodr_view *v, int32_t x, int32_t y, int32_t k, int64_t position[3]);

@@ -7,7 +7,8 @@
 
 #include <cmocka.h>
 
-#include "bench.h"
+#include "exhaustive.h"
+#include "library.h"
 
 enum { BITS = 8, GUARD_BITS = 4 };
 

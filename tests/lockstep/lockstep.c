@@ -1,116 +1,105 @@
 /* lockstep.c - runs the lock-step benches.
  *   lockstep [--transactions N] [--seed S] [BLOCK]...    20,000 transactions a machine of every block, from seed 1
- *   lockstep lerp                                        arithmetic alone, of all operands; without a name it is run
- * too A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
+ *   lockstep lerp | blend                                arithmetic, of all operands; run without a name, too
+ *
+ * A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
 #include "bench.h"
+#include "exhaustive.h"
+#include "lockstep.h"
+#include "modules.h"
 
 enum { EPISODE_TRANSACTIONS = 1000 };
 
-static const block_bench *const benches[] = {&bench_volume_divider, &bench_slice_generator, &bench_rasterizer,
-                                             &bench_texture_unit,   &bench_alpha_blender,   &bench_pixel_cache,
-                                             &bench_frame_buffer};
-
-static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp}};
+static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp},
+                                               {.name = "blend", .test_func = lockstep_blend}};
 
 enum { EXHAUSTIVE = sizeof exhaustive / sizeof *exhaustive };
-enum { BENCHES = sizeof benches / sizeof *benches };
 
 static uint64_t transactions = 20000, first_seed = 1;
 
-uint64_t bench_bits(rng *random, int32_t bits)
-{
-    uint64_t all = bits < 64 ? ((uint64_t)1 << bits) - 1 : UINT64_MAX;
-    switch (rng_int(random, 0, 7)) {
-    case 0: return 0;
-    case 1: return all;
-    case 2: return 1;
-    case 3: return (all >> 1) + 1;
-    default: return rng_next(random) & all;
-    }
-}
-
 /* ---- one episode ---- */
 
-static void set_machine(const char *settings, vodr_machine *m)
+/* A block in C with its traffic, and the block in Verilog beside it. */
+typedef struct episode {
+    bench bench;
+    lockstep pair;
+} episode;
+
+/* rtl/modules.c says which inputs a module has beside its ports. */
+static void check_inputs(vodr_block block, const rtl_library *l)
 {
-    char text[256], *rest = text, *word;
-    vodr_error error;
-    snprintf(text, sizeof text, "%s", settings);
-    assert_int_equal(vodr_machine_named("paper-16", m, &error), VODR_OK);
-    while ((word = strtok_r(rest, " ", &rest)) != NULL) {
-        char *value = strchr(word, '=');
-        *value++ = '\0';
-        if (vodr_machine_set(m, word, value, &error) != VODR_OK) {
-            fail_msg("%s", error.text);
-        }
+    const rtl_module *m = rtl_module_of(block);
+    const char *const others[] = {"clk", "rst", "memory_read_data"};
+    int32_t known = m->table ? 3 : 0, inputs = 0;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        known += rtl_library_port(l, others[i]) != NULL;
     }
+    const block_signals *s = signals_of(block);
+    for (int32_t i = 0; i < s->count; i++) {
+        known += s->ports[i].output ? 0 : s->ports[i].count;
+    }
+    for (const module_register *r = m->registers; r->name; r++) {
+        const vodr_rtl_port *p = rtl_library_port(l, r->name);
+        assert_true(p && !p->output && p->width_bits == r->width_bits);
+        known++;
+    }
+    for (int32_t i = 0; i < l->model.port_count; i++) {
+        inputs += !l->model.ports[i].output;
+    }
+    assert_int_equal(inputs, known);
 }
 
-static void begin(const block_bench *what, const char *settings, uint64_t seed, bench *b)
+/* The bench stops at the first difference. */
+static void begin(const block_bench *what, const char *settings, uint64_t seed, episode *e)
 {
     vodr_error error;
+    vodr_machine machine;
     const rtl_source source = {.root = VODR_ROOT, .build = VODR_BUILD};
-    *b = (bench){.seed = seed, .random = {seed}};
-    assert_true(case_make(seed, &b->scene));
-    set_machine(settings, &b->machine);
-    if (what->draw) {
-        what->draw(&b->random, &b->machine);
-    }
-    if (what->look) {
-        what->look(&b->random, &b->scene);
-    }
-    b->scene.table.count = (size_t)1 << b->machine.density_bits;
-    b->scene.entries = realloc(b->scene.entries, b->scene.table.count * sizeof *b->scene.entries);
-    b->scene.table.entries = b->scene.entries;
-    size_t clear = rng_one_in(&b->random, 2) ? (size_t)rng_int(&b->random, 0, (int64_t)b->scene.table.count) : 0;
-    for (size_t i = 0; i < b->scene.table.count; i++) {
-        uint16_t a = (uint16_t)bench_bits(&b->random, b->machine.tf_bits);
-        uint16_t c = (uint16_t)rng_int(&b->random, 0, a);
-        b->scene.entries[i] = i < clear ? (vodr_rgba){0, 0, 0, 0} : (vodr_rgba){c, a, (uint16_t)(c / 2), a};
-    }
-    if (clocked_start(&b->whole, &b->machine, &b->scene.input, &b->scene.table, &b->scene.view, NULL, &error) !=
-        VODR_OK) {
+    bench *b = &e->bench;
+    assert_int_equal(vodr_machine_named("paper-16", &machine, &error), VODR_OK);
+    if (bench_set(&machine, settings, &error) != VODR_OK || bench_open(b, what, &machine, seed, &error) != VODR_OK) {
         fail_msg("%s", error.text);
     }
-    b->faces = clocked_faces(b->whole);
-    b->reset = clocked_reset(b->whole);
-    if (lockstep_open(&b->pair, &source, what->block, clocked_setup(b->whole), b->faces, b->reset, &error) != RTL_OK) {
+    if (lockstep_open(&e->pair, &source, what->block, &b->setup, b->faces, b->reset, &error) != RTL_OK) {
         fail_msg("%s", error.text);
     }
+    check_inputs(what->block, &e->pair.rtl.library);
+    b->differs = &e->pair.first.found;
 }
 
-static void end(bench *b)
+static void end(episode *e)
 {
-    lockstep_close(&b->pair, b->faces);
-    clocked_free(b->whole);
-    case_free(&b->scene);
+    lockstep_close(&e->pair, e->bench.faces);
+    bench_close(&e->bench);
 }
 
 /* Up to `count` transactions; *count is then how many there were. */
 static bool run_episode(const block_bench *what, const char *settings, uint64_t seed, uint64_t *count, uint64_t *cycles)
 {
-    bench b;
-    begin(what, settings, seed, &b);
-    what->traffic(&b, *count);
-    const difference d = b.pair.first;
-    *cycles += b.cycles;
-    *count -= b.left;
-    end(&b);
+    episode e;
+    begin(what, settings, seed, &e);
+    what->traffic(&e.bench, *count);
+    const difference d = e.pair.first;
+    uint64_t cycle = e.bench.cycles;
+    *cycles += cycle;
+    *count -= e.bench.left;
+    end(&e);
     if (!d.found) {
         return true;
     }
     fprintf(stderr,
             "%s, machine paper-16 %s: cycle %" PRIu64 ", port %s: expected %s, got %s; again: --seed %" PRIu64 " %s\n",
-            signals_of(what->block)->name, settings, b.cycles, d.field->name, d.expected, d.got, seed,
+            signals_of(what->block)->name, settings, cycle, d.field->name, d.expected, d.got, seed,
             signals_of(what->block)->name);
     return false;
 }
@@ -145,7 +134,7 @@ static bool named(const char *name, int argc, char **argv, int first)
 
 int main(int argc, char **argv)
 {
-    struct CMUnitTest tests[BENCHES + EXHAUSTIVE];
+    struct CMUnitTest tests[VODR_BLOCK_COUNT + EXHAUSTIVE];
     size_t count = 0;
     int first = 1;
     for (; first + 1 < argc && strncmp(argv[first], "--", 2) == 0; first += 2) {
@@ -158,11 +147,11 @@ int main(int argc, char **argv)
         }
         *(argv[first][2] == 's' ? &first_seed : &transactions) = number;
     }
-    for (size_t i = 0; i < BENCHES; i++) {
-        const char *name = signals_of(benches[i]->block)->name;
+    for (int i = 0; i < VODR_BLOCK_COUNT; i++) {
+        const block_bench *what = bench_of((vodr_block)i);
+        const char *name = signals_of(what->block)->name;
         if (named(name, argc, argv, first)) {
-            tests[count++] =
-                (struct CMUnitTest){.name = name, .test_func = test_block, .initial_state = (void *)benches[i]};
+            tests[count++] = (struct CMUnitTest){.name = name, .test_func = test_block, .initial_state = (void *)what};
         }
     }
     for (size_t i = 0; i < EXHAUSTIVE; i++) {

@@ -27,14 +27,15 @@ static void draw(rng *random, vodr_machine *m)
 }
 
 /* Frames as long as they can be, so that numbers of lines have all their bits. */
-static void look(rng *random, test_case *scene)
+static void look(rng *random, const int32_t dims_vox[3], vodr_view *view)
 {
     enum { SHORT_PX = 8 };
+    (void)dims_vox;
     if (!rng_one_in(random, 4))
         return;
     bool wide = rng_one_in(random, 2);
-    scene->view.width_px = wide ? VODR_MAX_SIZE_PX : SHORT_PX;
-    scene->view.height_px = wide ? SHORT_PX : VODR_MAX_SIZE_PX;
+    view->width_px = wide ? VODR_MAX_SIZE_PX : SHORT_PX;
+    view->height_px = wide ? SHORT_PX : VODR_MAX_SIZE_PX;
 }
 
 /* ---- fragments: the texture unit's side ---- */
@@ -231,4 +232,63 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_pixel_cache = {VODR_BLOCK_PIXEL_CACHE, machines, draw, look, traffic};
+/* ---- what is legal ---- */
+
+typedef struct cache_rules {
+    uint64_t now;
+    bool read[BLENDING], writes[BLENDING]; /* by cycle: a pixel was shown in it, and is written */
+    int64_t fills, writes_waiting;         /* shown in cycles before, and not answered */
+    bool over;                             /* no fragment comes any more */
+} cache_rules;
+
+/* Pixels are shown a cycle after their read. */
+static const char *illegal_blended(const bench *b, cache_rules *r, const blended_port *p)
+{
+    uint64_t known = r->now - 1, done = r->now + 2 - (uint64_t)b->machine.blend_cycles;
+    if (p->known != r->read[known % BLENDING])
+        return "blended_known does not follow pixel_valid of the cycle before";
+    if (p->known)
+        r->writes[known % BLENDING] = p->known_writes;
+    if (p->valid != r->read[done % BLENDING])
+        return "blended_valid does not follow pixel_valid of BLEND_CYCLES - 2 cycles before";
+    if (p->valid && p->writes != r->writes[done % BLENDING])
+        return "blended_writes is not what blended_known_writes was for this pixel";
+    return NULL;
+}
+
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    const pixel_cache_in *in = inputs;
+    const pixel_cache_out *out = shown;
+    const vodr_view *view = &b->scene.view;
+    cache_rules *r = rules;
+    r->read[r->now % BLENDING] = out->pixel.valid;
+    const char *why = illegal_blended(b, r, in->blended);
+    if (in->filled->valid && !r->fills)
+        why = "filled_valid is 1, but no line is wanted";
+    if (in->written->valid && !r->writes_waiting)
+        why = "written_valid is 1, but no write waits";
+    if (in->colour->valid && (in->colour->x >= view->width_px || in->colour->y >= view->height_px))
+        why = "colour_x and colour_y are no pixel of the frame";
+    if (in->colour->valid && r->over)
+        why = "colour_valid is 1 after all blocks before were idle";
+    r->fills += out->fill.valid - in->filled->valid;
+    r->writes_waiting += out->write.valid - in->written->valid;
+    bool over = true;
+    for (int i = 0; i < BLOCKS_BEFORE; i++)
+        over &= in->before[i]->idle;
+    r->over |= over;
+    r->now++;
+    return why;
+}
+
+const block_bench bench_pixel_cache = {.block = VODR_BLOCK_PIXEL_CACHE,
+                                       .machines = machines,
+                                       .draw = draw,
+                                       .look = look,
+                                       .traffic = traffic,
+                                       .illegal = illegal,
+                                       .rules_bytes = sizeof(cache_rules),
+                                       .vectors = "line_px=4x1 cache_bytes=256 write_fifo=4",
+                                       .case_cycles = 768,
+                                       .level_cycles = {12000, 1000000}};

@@ -2,8 +2,8 @@
  *
  * C leaves the order of operands and arguments open: no expression may hold two draws unless one is an argument of the
  * other, or ?:, && or || lies between. */
-#ifndef TESTS_RNG_H
-#define TESTS_RNG_H
+#ifndef VECTORS_RNG_H
+#define VECTORS_RNG_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,6 +31,14 @@ static inline int64_t rng_int(rng *r, int64_t lo, int64_t hi)
 static inline bool rng_one_in(rng *r, int64_t n)
 {
     return rng_int(r, 1, n) == 1;
+}
+
+/* A number of either sign whose magnitude has at most `bits` bits, 64 at most: all lengths are equally likely. */
+static inline int64_t rng_signed(rng *r, int bits)
+{
+    int64_t length = rng_int(r, 0, bits);
+    int64_t value = length ? (int64_t)(rng_next(r) >> (64 - length)) : 0;
+    return rng_one_in(r, 2) ? -value : value;
 }
 
 /* A double from lo up to hi, without rounding but the last. */

@@ -72,4 +72,56 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_alpha_blender = {VODR_BLOCK_ALPHA_BLENDER, machines, draw, NULL, traffic};
+/* ---- what is legal ---- */
+
+typedef struct blender_rules {
+    bool holds, dead; /* a fragment waits before the cache */
+    int64_t unread;   /* fragments that are gone and wait for their pixel */
+} blender_rules;
+
+static bool is_premultiplied(const bench *b, uint64_t word)
+{
+    if (b->machine.blend == VODR_BLEND_MIP)
+        return !word || (word & ~(uint64_t)PIXEL_WORD_WRITTEN) >> b->machine.density_bits == 0;
+    const vodr_rgba p = pixel_of_word(&b->machine, word);
+    return p.r <= p.a && p.g <= p.a && p.b <= p.a;
+}
+
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    const alpha_blender_in *in = inputs;
+    blender_rules *r = rules;
+    (void)shown;
+    if (in->pixel->valid && !r->unread)
+        return "pixel_valid is 1, but no fragment waits for its pixel";
+    if (in->pixel->valid && !is_premultiplied(b, in->pixel->pixel))
+        return "pixel_rgba is no pixel: a colour is above alpha, or bits beyond a density are set";
+    r->unread -= in->pixel->valid;
+    if (in->door->gone && !r->holds)
+        return "colour_gone is 1, but no fragment waits before the cache";
+    if (in->door->gone) {
+        r->unread += !r->dead;
+        r->holds = false;
+    }
+    if (r->unread > (b->machine.nonblocking ? b->machine.nonblocking_fifo : 1))
+        return "colour_gone is 1, but as many fragments wait for their pixel as can";
+    if (in->colour->valid && !is_premultiplied(b, in->colour->colour))
+        return "colour_rgba is no pixel: a colour is above alpha, or bits beyond a density are set";
+    if (!in->colour->valid || !in->door->ready)
+        return NULL;
+    if (r->holds)
+        return "colour_valid and colour_ready are 1, but a fragment waits before the cache";
+    r->holds = true;
+    r->dead = in->colour->dead;
+    return NULL;
+}
+
+const block_bench bench_alpha_blender = {.block = VODR_BLOCK_ALPHA_BLENDER,
+                                         .machines = machines,
+                                         .draw = draw,
+                                         .traffic = traffic,
+                                         .illegal = illegal,
+                                         .rules_bytes = sizeof(blender_rules),
+                                         .vectors = "nonblocking_fifo=4",
+                                         .case_cycles = 512,
+                                         .level_cycles = {10500, 1000000}};

@@ -37,7 +37,7 @@ static void draw(rng *random, vodr_machine *m)
         m->dram_refresh_cycles = 0;
 }
 
-enum { TRANSACTIONS_A_MEMORY = 1000 };
+enum { TRANSACTIONS_A_MEMORY = 1000, WRAPS_BYTES = 256 };
 
 /* Both sides of the bus. */
 typedef struct sides {
@@ -57,7 +57,7 @@ typedef struct sides {
 static sides sides_of(const bench *b)
 {
     const vodr_machine *m = &b->machine;
-    const block_setup *setup = clocked_setup(b->whole);
+    const block_setup *setup = &b->setup;
     sides s = {.setup = setup, .line_bytes = line_bytes(m), .pixel_bytes = pixel_bytes(m), .bricks = 1};
     s.lines = setup->storage->texture_base / s.line_bytes;
     for (int c = 0; c < 3; c++)
@@ -94,25 +94,45 @@ static void ask_write(bench *b, sides *s)
         w->data[i] = (uint8_t)bench_bits(&b->random, 8);
 }
 
-/* A brick, or so much of it that bursts and beats end where they like. */
-static void ask_load(bench *b, sides *s)
+static void forget_write(bench *b, sides *s)
 {
-    int64_t brick = rng_int(&b->random, 0, s->bricks - 1), bytes = density_bytes(&b->machine), at = brick;
+    s->write.bytes = (int32_t)rng_int(&b->random, 0, s->line_bytes);
+    memset(s->write.data, (int)bench_bits(&b->random, 8), (size_t)s->line_bytes);
+}
+
+/* Of a brick with its border. */
+static int64_t brick_bytes(const bench *b, const sides *s, int64_t brick)
+{
+    int64_t bytes = density_bytes(&b->machine);
     vox_box box;
     for (int c = 0; c < 3; c++) {
         int32_t size = s->setup->volume->dims_vox[c], edge = s->setup->edge_vox[c], count = ceil_div32(size, edge);
-        box.lo[c] = (int32_t)(at % count) * edge;
+        box.lo[c] = (int32_t)(brick % count) * edge;
         box.hi[c] = edge < size - box.lo[c] ? box.lo[c] + edge : size;
-        at /= count;
+        brick /= count;
     }
     box = voxels_reach(s->setup->volume->dims_vox, &box, filter_border_vox(&b->machine));
     for (int c = 0; c < 3; c++)
         bytes *= box.hi[c] - box.lo[c];
+    return bytes;
+}
+
+static void note_load(sides *s, int64_t bytes)
+{
+    s->loads[0] = s->loads[1];
+    s->loads[1] = bytes;
+    s->loading = true;
+}
+
+/* A brick, or so much of it that bursts and beats end where they like, or that a count of eight bits comes round. */
+static void ask_load(bench *b, sides *s)
+{
+    int64_t brick = rng_int(&b->random, 0, s->bricks - 1), bytes = brick_bytes(b, s, brick);
     s->load.address = s->setup->storage->texture_base + brick * s->setup->storage->brick_room_bytes;
     s->load.bytes = rng_one_in(&b->random, 3) ? bytes : rng_int(&b->random, 1, bytes < 700 ? bytes : 700);
-    s->loads[0] = s->loads[1];
-    s->loads[1] = s->load.bytes;
-    s->loading = true;
+    if (bytes > WRAPS_BYTES && rng_one_in(&b->random, 4))
+        s->load.bytes = WRAPS_BYTES;
+    note_load(s, s->load.bytes);
 }
 
 /* What they ask for in the next cycle. What is not asked for any more is not kept either. */
@@ -125,7 +145,7 @@ static void ask(bench *b, sides *s)
     if (s->write.valid)
         ask_write(b, s);
     else
-        memset(s->write.data, (int)bench_bits(&b->random, 8), (size_t)s->line_bytes);
+        forget_write(b, s);
     s->writes += s->write.valid;
     if (!s->load.valid && !s->loading && !s->loads[0] && rng_one_in(&b->random, s->likes_load)) {
         s->load.valid = true;
@@ -166,4 +186,69 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = done < transactions ? transactions - done : 0;
 }
 
-const block_bench bench_frame_buffer = {VODR_BLOCK_FRAME_BUFFER, machines, draw, NULL, traffic};
+/* ---- what is legal ---- */
+
+typedef struct bus_rules {
+    sides sides; /* what is under way of theirs */
+    bool begun;
+} bus_rules;
+
+static const char *illegal_line(const sides *s, const fill_port *fill, const write_port *write)
+{
+    int64_t end = s->lines * s->line_bytes, unit = s->through ? s->pixel_bytes : s->line_bytes;
+    if (fill->valid && s->fills == s->fills_room)
+        return "fill_valid is 1, but as many fills wait for their line as can";
+    if (fill->valid && (fill->address % s->line_bytes || fill->address >= end))
+        return "fill_address is no line's";
+    if (write->valid && s->writes == s->writes_room)
+        return "write_valid is 1, but as many writes wait for the bus as can";
+    if (write->valid && write->bytes != unit)
+        return "write_bytes is not the size of a line, or of a pixel written through";
+    if (write->valid && (write->address % unit || write->address >= end))
+        return "write_address is none of a line, or of a pixel written through";
+    return NULL;
+}
+
+static const char *illegal_load(const bench *b, const sides *s, const load_port *load)
+{
+    const storage *memory = s->setup->storage;
+    int64_t at = load->address - memory->texture_base, brick = at / memory->brick_room_bytes;
+    if (b->machine.traversal == VODR_TRAVERSAL_WHOLE)
+        return "load_valid is 1, but traversal is whole";
+    if (s->loading || s->loads[0])
+        return "load_valid is 1, but two loads are under way";
+    if (at < 0 || at % memory->brick_room_bytes || brick >= s->bricks)
+        return "load_address is no brick's";
+    return load->bytes < 1 || load->bytes > brick_bytes(b, s, brick) ? "load_bytes is 0 or more than the brick has"
+                                                                     : NULL;
+}
+
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    const frame_buffer_in *in = inputs;
+    const frame_buffer_out *out = shown;
+    bus_rules *r = rules;
+    if (!r->begun)
+        r->sides = sides_of(b);
+    else
+        hear(&r->sides, out);
+    r->begun = true;
+    const char *why = illegal_line(&r->sides, in->fill, in->write);
+    r->sides.fills += in->fill->valid;
+    r->sides.writes += in->write->valid;
+    if (why || !in->load->valid || !out->load.ready)
+        return why;
+    why = illegal_load(b, &r->sides, in->load);
+    note_load(&r->sides, in->load->bytes);
+    return why;
+}
+
+const block_bench bench_frame_buffer = {.block = VODR_BLOCK_FRAME_BUFFER,
+                                        .machines = machines,
+                                        .draw = draw,
+                                        .traffic = traffic,
+                                        .illegal = illegal,
+                                        .rules_bytes = sizeof(bus_rules),
+                                        .vectors = "line_px=4x1 mem_bus_bytes=4 write_fifo=4",
+                                        .case_cycles = 640,
+                                        .level_cycles = {10500, 1000000}};

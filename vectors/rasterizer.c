@@ -75,20 +75,70 @@ static void traffic(bench *b, uint64_t transactions)
     slice_port slice = {.valid = false};
     accept_port accept = {.ready = false};
     const rasterizer_in in = {.slice = &slice, .fragment = &accept};
-    int64_t haste = 1;
+    int64_t haste = 1, offers = 1;
     for (uint64_t done = 0; done < transactions && !bench_differs(b); b->cycles++) {
         bool taken = slice.valid && out.slice.ready;
         if (rng_one_in(&b->random, 100))
             haste = rng_one_in(&b->random, 2) ? rng_int(&b->random, 2, 10) : 1;
+        if (rng_one_in(&b->random, 100))
+            offers = rng_one_in(&b->random, 3) ? 2 : rng_int(&b->random, 2, 60);
         done += taken + (out.fragment.valid && accept.ready);
         face->clock(face->state, &in, &out);
         if (taken || !slice.valid) {
             slice = any_slice(&b->random);
-            slice.valid = !rng_one_in(&b->random, 3);
+            slice.valid = rng_one_in(&b->random, offers);
         }
         accept.ready = rng_one_in(&b->random, haste);
         accept.loading = rng_one_in(&b->random, 2);
     }
 }
 
-const block_bench bench_rasterizer = {VODR_BLOCK_RASTERIZER, machines, NULL, NULL, traffic};
+/* ---- what is legal ---- */
+
+__extension__ typedef __int128 wide;
+
+static bool fits(wide number)
+{
+    const wide limit = (wide)1 << NUMERATOR_BITS;
+    return number > -limit && number < limit;
+}
+
+/* Whether no sum that leads to a numerator within the bound overflows. */
+static bool axis_fits(const slice_port *p, int c)
+{
+    const slice_plane *plane = &p->slice.plane;
+    bool good = fits(p->slice.lo[c]) && fits(p->slice.hi[c]) && fits(plane->origin[c]) && fits(plane->step_u[c]) &&
+                fits(plane->step_v[c]);
+    for (int corner = 0; corner < 4; corner++) {
+        wide x = corner & 1 ? p->bound.x1 : 0, y = corner & 2 ? p->bound.y1 : 0;
+        wide u = x * plane->step_u[c], v = y * plane->step_v[c];
+        good &= fits(u) && fits(v) && fits(plane->origin[c] + u) && fits(plane->origin[c] + v) &&
+                fits(plane->origin[c] + u + v);
+    }
+    return good;
+}
+
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    const slice_port *p = ((const rasterizer_in *)inputs)->slice;
+    const px_rect *bound = &p->bound;
+    (void)b;
+    (void)rules;
+    (void)shown;
+    if (!p->valid)
+        return NULL;
+    if (bound->x0 >= bound->x1 || bound->x1 > ANY_PX || bound->y0 >= bound->y1 || bound->y1 > ANY_PX)
+        return "slice_x0, _y0, _x1, _y1 are no rectangle of a frame of 16384x16384 pixels";
+    for (int c = 0; c < 3; c++)
+        if (!axis_fits(p, c))
+            return "a limit, a step, the origin or a numerator of the slice has a magnitude of 2^62 or more";
+    return NULL;
+}
+
+const block_bench bench_rasterizer = {.block = VODR_BLOCK_RASTERIZER,
+                                      .machines = machines,
+                                      .traffic = traffic,
+                                      .illegal = illegal,
+                                      .vectors = "",
+                                      .case_cycles = 512,
+                                      .level_cycles = {10000, 1000000}};

@@ -45,7 +45,7 @@ typedef struct visits {
 
 static vox_box box_of(const bench *b, uint64_t number)
 {
-    const block_setup *setup = clocked_setup(b->whole);
+    const block_setup *setup = &b->setup;
     vox_box box;
     for (int c = 0; c < 3; c++) {
         int32_t size = setup->volume->dims_vox[c], edge = setup->edge_vox[c], count = setup->walk->bricks[c];
@@ -58,7 +58,7 @@ static vox_box box_of(const bench *b, uint64_t number)
 
 static void hand_on(bench *b, visits *v, int64_t haste)
 {
-    const volume_divider *walk = clocked_setup(b->whole)->walk;
+    const volume_divider *walk = b->setup.walk;
     int64_t bricks = (int64_t)walk->bricks[0] * walk->bricks[1] * walk->bricks[2];
     v->port.valid = v->port.fresh = v->known - v->drawn < VISITS && rng_one_in(&b->random, haste);
     if (!v->port.fresh)
@@ -267,4 +267,148 @@ static void traffic(bench *b, uint64_t transactions)
     }
 }
 
-const block_bench bench_texture_unit = {VODR_BLOCK_TEXTURE_UNIT, machines, draw, NULL, traffic};
+/* ---- what is legal ---- */
+
+typedef struct texture_rules {
+    uint64_t now;
+    vox_box box[VISITS]; /* by number of the visit */
+    int64_t known, drawn;
+    int64_t bytes[VISITS]; /* of loads that were asked for and have not come, in order */
+    int64_t first_load, loads, done_bytes;
+    bool granting;         /* the last has bursts that were not granted */
+    uint64_t due[WAITING]; /* when voxels come that were fetched */
+    uint64_t fetched, answered;
+    bool holds; /* a fragment waits before the cache */
+} texture_rules;
+
+static const char *illegal_visit(const bench *b, texture_rules *r, const brick_port *p)
+{
+    const int32_t *bricks = b->setup.walk->bricks;
+    if (!p->fresh)
+        return NULL;
+    if (r->known - r->drawn == VISITS)
+        return "brick_fresh is 1, but 8 visits were not gone through";
+    if (p->brick >= (uint64_t)bricks[0] * (uint64_t)bricks[1] * (uint64_t)bricks[2])
+        return "brick_number is none of the volume's";
+    const vox_box box = box_of(b, p->brick);
+    for (int c = 0; c < 3; c++)
+        if (p->box.lo[c] != box.lo[c] || p->box.hi[c] != box.hi[c])
+            return "brick_lo and brick_hi are not the box of brick_number";
+    r->box[r->known++ % VISITS] = box;
+    return NULL;
+}
+
+static bool is_inside(const bench *b, const vox_box *box, const int64_t a[3])
+{
+    const vodr_view *view = &b->scene.view;
+    const int64_t limit = (int64_t)1 << 62;
+    for (int c = 0; c < 3; c++) {
+        int64_t position = view->base[c] + (a[c] >> view->shift);
+        if (a[c] <= -limit || a[c] >= limit || position < (int64_t)box->lo[c] << VODR_POSITION_BITS ||
+            position >= (int64_t)box->hi[c] << VODR_POSITION_BITS)
+            return false;
+    }
+    return true;
+}
+
+/* `known` visits were handed on before. */
+static const char *illegal_fragment(const bench *b, texture_rules *r, const fragment_port *p, int64_t known)
+{
+    if ((p->valid || p->visit_done) && r->drawn == known)
+        return "fragment_valid or fragment_visit_done is 1, but there is no visit";
+    if (p->valid && p->visit_done)
+        return "fragment_valid and fragment_visit_done are 1";
+    if (p->valid && (p->x >= VODR_MAX_SIZE_PX || p->y >= VODR_MAX_SIZE_PX))
+        return "fragment_x and fragment_y are no pixel of a frame of 16384x16384";
+    if (p->valid && !is_inside(b, &r->box[r->drawn % VISITS], p->a))
+        return "fragment_a is no position in the visit's brick";
+    r->drawn += p->visit_done;
+    return NULL;
+}
+
+static const char *illegal_beat(const bench *b, texture_rules *r, const loaded_port *p)
+{
+    int64_t beat = b->machine.mem_bus_bytes, burst = b->machine.texture_burst_bytes;
+    if (!r->loads)
+        return "load_data_valid is 1, but nothing is to come";
+    int64_t rest = r->bytes[r->first_load % VISITS] - r->done_bytes, of_burst = burst - r->done_bytes % burst;
+    beat = beat < of_burst ? beat : of_burst;
+    if (p->bytes != (beat < rest ? beat : rest))
+        return "load_data_bytes is not what is left of the load or the burst, or a beat";
+    for (int32_t i = 0; b->machine.density_bits > 8 && i < p->bytes; i++)
+        if (((r->done_bytes + i) & 1) && p->data[i] >> (b->machine.density_bits - 8))
+            return "load_data has a density beyond density_bits";
+    r->done_bytes += p->bytes;
+    if (r->done_bytes == r->bytes[r->first_load % VISITS]) {
+        r->first_load++;
+        r->loads--;
+        r->done_bytes = 0;
+    }
+    return r->granting && !r->loads ? "load_data ends before load_granted" : NULL;
+}
+
+static const char *illegal_load(const bench *b, texture_rules *r, const loaded_port *in, const load_port *out)
+{
+    const char *why = NULL;
+    if (in->granted && !r->granting)
+        return "load_granted is 1, but no load is under way";
+    if (in->ready && r->granting && !in->granted)
+        return "load_ready is 1 while a load is under way";
+    r->granting &= !in->granted;
+    if (in->data_valid)
+        why = illegal_beat(b, r, in);
+    if (out->valid && in->ready) {
+        r->bytes[(r->first_load + r->loads++) % VISITS] = out->bytes;
+        r->granting = true;
+    }
+    return why;
+}
+
+static const char *illegal_voxels(const bench *b, texture_rules *r, const voxels_port *in, const fetch_port *out)
+{
+    bool is_due = r->answered < r->fetched && r->due[r->answered % WAITING] == r->now;
+    if (in->valid != is_due)
+        return "voxels_valid does not follow fetch_valid of mem_latency_cycles before";
+    r->answered += in->valid;
+    for (int i = 0; in->valid && i < 8; i++)
+        if (in->density[i] >> b->machine.density_bits)
+            return "voxels_density has one beyond density_bits";
+    if (out->valid)
+        r->due[r->fetched++ % WAITING] = r->now + (uint64_t)b->machine.mem_latency_cycles;
+    return NULL;
+}
+
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    const texture_unit_in *in = inputs;
+    const texture_unit_out *out = shown;
+    texture_rules *r = rules;
+    int64_t known = r->known;
+    const char *why = illegal_visit(b, r, in->brick);
+    if (!why)
+        why = illegal_fragment(b, r, in->fragment, known);
+    if (!why)
+        why = illegal_load(b, r, in->load, &out->load);
+    if (!why)
+        why = illegal_voxels(b, r, in->voxels, &out->fetch);
+    if (in->colour->gone && !r->holds)
+        why = "colour_gone is 1, but no fragment waits before the cache";
+    r->holds &= !in->colour->gone;
+    if (out->colour.valid && in->colour->ready) {
+        if (r->holds)
+            why = "colour_ready is 1, but a fragment waits before the cache";
+        r->holds = true;
+    }
+    r->now++;
+    return why;
+}
+
+const block_bench bench_texture_unit = {.block = VODR_BLOCK_TEXTURE_UNIT,
+                                        .machines = machines,
+                                        .draw = draw,
+                                        .traffic = traffic,
+                                        .illegal = illegal,
+                                        .rules_bytes = sizeof(texture_rules),
+                                        .vectors = "mem_bus_bytes=4 fragment_fifo=6",
+                                        .case_cycles = 1024,
+                                        .level_cycles = {12000, 1000000}};

@@ -58,4 +58,36 @@ static void traffic(bench *b, uint64_t transactions)
     b->left = transactions - done;
 }
 
-const block_bench bench_slice_generator = {VODR_BLOCK_SLICE_GENERATOR, machines, draw, NULL, traffic};
+/* ---- what is legal ---- */
+
+static bool is_within(int32_t lo, int32_t hi, int32_t size)
+{
+    return lo >= 0 && lo < hi && hi <= size;
+}
+
+static const char *illegal(const bench *b, void *rules, const void *inputs, const void *shown)
+{
+    const brick_port *p = ((const slice_generator_in *)inputs)->brick;
+    const vodr_view *v = &b->scene.view;
+    (void)rules;
+    (void)shown;
+    if (!p->valid)
+        return NULL;
+    for (int c = 0; c < 3; c++)
+        if (!is_within(p->box.lo[c], p->box.hi[c], b->scene.input.dims_vox[c]))
+            return "brick_lo and brick_hi are no box of the volume";
+    if (!is_within(p->bound.x0, p->bound.x1, v->width_px) || !is_within(p->bound.y0, p->bound.y1, v->height_px))
+        return "brick_x0, _y0, _x1, _y1 are no rectangle of the frame";
+    if (p->k0 > p->k1 || p->k1 > v->slices)
+        return "brick_k0 and brick_k1 are no range of slices of the view, nor none";
+    return NULL;
+}
+
+const block_bench bench_slice_generator = {.block = VODR_BLOCK_SLICE_GENERATOR,
+                                           .machines = machines,
+                                           .draw = draw,
+                                           .traffic = traffic,
+                                           .illegal = illegal,
+                                           .vectors = "",
+                                           .case_cycles = 400,
+                                           .level_cycles = {10000, 1000000}};
