@@ -7,7 +7,7 @@
 static const char *const machines[] = {
     "",
     "nonblocking=1",
-    "ways=1 line_px=4x4 cache_bytes=256 blend_cycles=3",
+    "ways=1 line_px=4x4 cache_bytes=256 blend_cycles=3 write_fifo=1",
     "ways=16 line_px=2x1 fb_bits=16 tf_bits=16 cache_bytes=1024 nonblocking=1 nonblocking_fifo=5 "
     "nonblocking_misses=2 blend_cycles=9",
     "ways=8 line_px=8x8 cache_bytes=2048 blend_cycles=40 write_fifo=5 clear_on_first_touch=1",
