@@ -1,5 +1,8 @@
-/* test_frames.c - the golden frames of vectors/frames.txt are drawn again: frame, counters and cycles are what they
- * were. test_frames            compares test_frames --write    prints what the file has to be (make vectors) */
+/* test_frames.c - the golden frames of vectors/frames.txt are drawn again, fast, block by block and clocked: frame,
+ * counters and cycles are what they were.
+ *
+ *   test_frames            compares
+ *   test_frames --write    prints what the file has to be (make vectors) */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -80,11 +83,11 @@ static void append_counters(char **text, const char *of, json_t *counters)
 }
 
 /* A frame by a machine as a line. */
-static void draw_golden(const golden *g, const char *machine_name, char **text)
+static void draw_golden(const golden *g, const char *machine_name, vodr_path way, char **text)
 {
     static uint16_t voxels[VOXELS];
     static vodr_rgba entries[1 << 12];
-    const vodr_options options = {.cycles = true, .threads = 1};
+    const vodr_options options = {.cycles = true, .threads = 1, .path = way};
     vodr_volume input = {.dims_vox = {N, N, N}, .voxel_bytes = 2, .voxels = voxels};
     vodr_machine machine;
     vodr_view view;
@@ -111,23 +114,22 @@ static void draw_golden(const golden *g, const char *machine_name, char **text)
     append(text, "\n");
 }
 
-static char *draw_all(void)
+static char *draw_all(vodr_path way)
 {
     const char *name;
     char *text = strdup(
         "# Golden frames (docs/vectors.md): `make vectors` writes them, tests/test_frames.c draws them again.\n");
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++)
         for (size_t m = 0; (name = vodr_machine_name(m)) != NULL; m++)
-            draw_golden(&frames[i], name, &text);
+            draw_golden(&frames[i], name, way, &text);
     return text;
 }
 
-/* The first line that differs. */
-static void test_frames(void **state)
+/* Tells the first line that differs. */
+static void compare(vodr_path way)
 {
-    (void)state;
     FILE *file = fopen(path, "r");
-    char *text = draw_all(), line[8192];
+    char *text = draw_all(way), line[8192];
     assert_non_null(file);
     for (const char *at = text; *at; at += strlen(line)) {
         if (!fgets(line, sizeof line, file))
@@ -140,11 +142,30 @@ static void test_frames(void **state)
     free(text);
 }
 
+static void drawn_fast(void **state)
+{
+    (void)state;
+    compare(VODR_PATH_FAST);
+}
+
+static void drawn_block_by_block(void **state)
+{
+    (void)state;
+    compare(VODR_PATH_BLOCKS);
+}
+
+static void drawn_clocked(void **state)
+{
+    (void)state;
+    compare(VODR_PATH_CLOCKED);
+}
+
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_frames)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(drawn_fast), cmocka_unit_test(drawn_block_by_block),
+                                       cmocka_unit_test(drawn_clocked)};
     if (argc == 2 && strcmp(argv[1], "--write") == 0) {
-        char *text = draw_all();
+        char *text = draw_all(VODR_PATH_FAST);
         fputs(text, stdout);
         free(text);
         return 0;
