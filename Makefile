@@ -49,7 +49,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -87,6 +87,13 @@ cosim-long: ## whole frames of 256^3 in Verilog beside C, a million transactions
 	@$(BUILD)/tests/test_cosim 1000
 	@tests/cosim.sh --long $(BUILD)/vodr
 	@scripts/cosim $(BUILD) 256
+
+synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and write docs/table-synthesis.md again (half an hour)
+	@scripts/deps synth
+	@$(MAKE) -s $(BUILD)/gen/vodr_hw.vh
+	@scripts/synth $(BUILD)
+	@scripts/tables $(BUILD) synthesis
+	@cat $(BUILD)/tables/synthesis
 
 bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
 	@scripts/deps rtl
@@ -150,7 +157,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size rtl table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl synthesis table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
