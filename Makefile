@@ -85,6 +85,7 @@ cosim-long: ## whole frames of 256^3 in Verilog beside C, a million transactions
 	@$(MAKE) -s $(PARALLEL) all tests
 	@$(BUILD)/tests/lockstep/lockstep --transactions 1000000
 	@$(BUILD)/tests/test_cosim 1000
+	@$(BUILD)/tests/test_pairwise 0
 	@tests/cosim.sh --long $(BUILD)/vodr
 	@scripts/cosim $(BUILD) 256
 
@@ -219,7 +220,7 @@ $(BUILD)/libvectors.a: $(VECTORS)
 
 # Where co-simulation finds what it builds libraries of, and keeps them: builds of one tree share theirs.
 WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(if $(filter build/%,$(BUILD)),build,$(BUILD)))"'
-$(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o: STRICT += $(WHERE)
+$(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o $(BUILD)/tests/test_pairwise.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
