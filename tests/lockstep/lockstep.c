@@ -36,15 +36,16 @@ typedef struct episode {
 } episode;
 
 /* rtl/modules.c says which inputs a module has beside its ports. */
-static void check_inputs(vodr_block block, const rtl_library *l)
+static void check_inputs(const rtl_block *block)
 {
-    const rtl_module *m = rtl_module_of(block);
+    const rtl_library *l = &block->library;
+    const rtl_module *m = rtl_module_of(block->block);
     const char *const others[] = {"clk", "rst", "memory_read_data"};
     int32_t known = m->table ? 3 : 0, inputs = 0;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         known += rtl_library_port(l, others[i]) != NULL;
     }
-    const block_signals *s = signals_of(block);
+    const block_signals *s = signals_of(block->block);
     for (int32_t i = 0; i < s->count; i++) {
         known += s->ports[i].output ? 0 : s->ports[i].count;
     }
@@ -73,7 +74,7 @@ static void begin(const block_bench *what, const char *settings, uint64_t seed, 
     if (lockstep_open(&e->pair, &source, what->block, &b->setup, b->faces, b->reset, &error) != RTL_OK) {
         fail_msg("%s", error.text);
     }
-    check_inputs(what->block, &e->pair.rtl.library);
+    check_inputs(&e->pair.rtl);
     b->differs = &e->pair.first.found;
 }
 
