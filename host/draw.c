@@ -17,36 +17,30 @@ double draw_median(double *times, int count)
     return (times[(count - 1) / 2] + times[count / 2]) / 2;
 }
 
-static host_status of_rtl(rtl_status status, const vodr_error *reason, host_error *error)
+static void begin(void *begin_s)
+{
+    *(double *)begin_s = progress_now_s();
+}
+
+/* *begin_s becomes when drawing began: building libraries is no part of it. */
+static host_status draw_cosim(const scene *s, const vodr_machine *machine, const vodr_options *how,
+                              const cosim_options *cosim, result *r, double *begin_s, host_error *error)
 {
     static const host_status of[] = {[RTL_OK] = HOST_OK,
                                      [RTL_DIFFERS] = HOST_DIFFERENT,
                                      [RTL_INVALID] = HOST_BAD_INPUT,
                                      [RTL_NO_MEMORY] = HOST_ENVIRONMENT,
                                      [RTL_ENVIRONMENT] = HOST_ENVIRONMENT};
-    return status == RTL_OK ? HOST_OK : host_fail(error, of[status], "%s", reason->text);
-}
-
-static host_status draw_cosim(const scene *s, const vodr_machine *machine, const vodr_options *how,
-                              const cosim_options *cosim, result *r, host_error *error)
-{
     vodr_error reason;
     cosim_options options = *cosim;
+    options.begin = begin;
+    options.begin_context = begin_s;
     options.progress = how->progress;
     options.progress_context = how->progress_context;
     options.observer = how->observer;
     rtl_status status =
         cosim_render(machine, &s->densities, &s->table, &s->view, &options, &r->frame, &r->counters, &reason);
-    return of_rtl(status, &reason, error);
-}
-
-/* Building is no part of drawing. */
-static host_status prepare(const scene *s, const vodr_machine *machine, const cosim_options *cosim, host_error *error)
-{
-    vodr_error reason;
-    if (!cosim)
-        return HOST_OK;
-    return of_rtl(cosim_prepare(machine, &s->densities, &s->table, &s->view, cosim, &reason), &reason, error);
+    return status == RTL_OK ? HOST_OK : host_fail(error, of[status], "%s", reason.text);
 }
 
 static host_status draw_c(const scene *s, const vodr_machine *machine, const vodr_options *how, result *r,
@@ -65,7 +59,8 @@ static host_status draw_once(const scene *s, const vodr_machine *machine, const 
 {
     vodr_frame_free(&r->frame);
     double begin_s = progress_now_s();
-    host_status status = cosim ? draw_cosim(s, machine, how, cosim, r, error) : draw_c(s, machine, how, r, error);
+    host_status status =
+        cosim ? draw_cosim(s, machine, how, cosim, r, &begin_s, error) : draw_c(s, machine, how, r, error);
     *wall_s = progress_now_s() - begin_s;
     return status;
 }
@@ -85,7 +80,7 @@ host_status draw(const scene *s, const vodr_machine *machine, const draw_options
     double *times = malloc((size_t)how->repeat * sizeof *times);
     if (!times)
         return host_fail(error, HOST_ENVIRONMENT, "no memory");
-    host_status status = prepare(s, machine, how->cosim, error);
+    host_status status = HOST_OK;
     for (int i = 0; status == HOST_OK && i < how->repeat; i++)
         status = draw_once(s, machine, &options, how->cosim, r, &times[i], error);
     progress_end(&line);

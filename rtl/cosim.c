@@ -114,20 +114,31 @@ static rtl_status cosim_open(cosim *c, const inputs *in, const cosim_options *o,
     return status;
 }
 
-/* What a block in Verilog did differently by now. */
-static const difference *difference_of(const cosim *c, int block)
+/* A block in Verilog, or vodr_top for any, and what it did differently by now; NULLs: it is in C. */
+typedef struct verilog {
+    rtl_block *block;
+    const difference *first;
+} verilog;
+
+static verilog verilog_of(const cosim *c, int block)
 {
-    return c->top ? &c->top->first : c->steps[block] ? &c->steps[block]->first : transactions_first(c->streams[block]);
+    if (c->top)
+        return (verilog){&c->top->rtl, &c->top->first};
+    if (c->steps[block])
+        return (verilog){&c->steps[block]->rtl, &c->steps[block]->first};
+    if (c->streams[block])
+        return (verilog){transactions_block(c->streams[block]), transactions_first(c->streams[block])};
+    return (verilog){NULL, NULL};
 }
 
 /* The first block whose Verilog differs by now; NO_BLOCK when none does. */
 static int differing(const cosim *c)
 {
-    if (c->top && c->top->first.found)
-        return c->top->block;
-    for (int b = 0; b < VODR_BLOCK_COUNT; b++)
-        if ((c->steps[b] || c->streams[b]) && difference_of(c, b)->found)
-            return b;
+    for (int b = 0; b < VODR_BLOCK_COUNT; b++) {
+        const difference *first = verilog_of(c, b).first;
+        if (first && first->found)
+            return c->top ? (int)c->top->block : b;
+    }
     return NO_BLOCK;
 }
 
@@ -183,11 +194,6 @@ static int draw(cosim *c, const cosim_options *o)
 
 /* ---- a difference ---- */
 
-static rtl_block *block_of(const cosim *c, int block)
-{
-    return c->top ? &c->top->rtl : c->steps[block] ? &c->steps[block]->rtl : transactions_block(c->streams[block]);
-}
-
 /* Draws the frame again up to the difference, and a little beyond, with the block's signals written down. */
 static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int block, const difference *d,
                                 uint64_t cycle, vodr_error *error)
@@ -196,7 +202,7 @@ static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int bl
     waveform w;
     rtl_status status = cosim_open(&c, in, o, block, error);
     if (status == RTL_OK)
-        status = waveform_open(&w, o->waveform, block_of(&c, block), d, cycle, error);
+        status = waveform_open(&w, o->waveform, verilog_of(&c, block).block, d, cycle, error);
     bool left = status == RTL_OK;
     while (left && c.cycle < w.end_cycle) {
         waveform_cycle(&w, c.cycle);
@@ -208,7 +214,7 @@ static rtl_status draw_waveform(const inputs *in, const cosim_options *o, int bl
 
 static rtl_status tell_difference(cosim *c, const inputs *in, const cosim_options *o, int block, vodr_error *error)
 {
-    const difference d = *difference_of(c, block);
+    const difference d = *verilog_of(c, block).first;
     const place p = places_of(&c->places, (vodr_block)block);
     const uint64_t cycle = c->cycle ? c->cycle - 1 : 0;
     char where[120], waveform_note[160] = "";
@@ -231,16 +237,6 @@ static rtl_status tell_hanging(const cosim *c, vodr_error *error)
     return RTL_DIFFERS;
 }
 
-rtl_status cosim_prepare(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                         const vodr_view *view, const cosim_options *options, vodr_error *error)
-{
-    const inputs in = {machine, volume, table, view};
-    cosim c;
-    rtl_status status = cosim_open(&c, &in, options, NO_BLOCK, error);
-    cosim_close(&c);
-    return status;
-}
-
 rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                         const vodr_view *view, const cosim_options *options, vodr_frame *frame, vodr_counters *counters,
                         vodr_error *error)
@@ -251,6 +247,8 @@ rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, 
     *frame = (vodr_frame){0};
     *counters = (vodr_counters){0};
     rtl_status status = cosim_open(&c, &in, options, NO_BLOCK, error);
+    if (status == RTL_OK && options->begin)
+        options->begin(options->begin_context);
     if (status == RTL_OK)
         block = draw(&c, options);
     if (block != NO_BLOCK)

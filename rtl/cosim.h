@@ -17,14 +17,12 @@ typedef struct cosim_options {
     bool top;                            /* instead, all of them as one model, vodr_top.v */
     cosim_compare compare;               /* of blocks; vodr_top is held against cycles */
     const char *waveform;                /* where a difference leaves its waveform, without ".fst"; NULL: nowhere */
+    void (*begin)(void *context); /* libraries are built and loaded, the first cycle comes; NULL: nobody is told */
+    void *begin_context;
     void (*progress)(void *context, double done);
     void *progress_context;
     const vodr_observer *observer;
 } cosim_options;
-
-/* Builds the libraries that cosim_render() would, where they are not there yet: seconds each. */
-rtl_status cosim_prepare(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
-                         const vodr_view *view, const cosim_options *options, vodr_error *error);
 
 /* As vodr_render(), with counters->cycles. Inputs are those that vodr_render() takes. RTL_DIFFERS: the sentence says
  * cycle, block, port, what was expected and got, and the place in the picture. */

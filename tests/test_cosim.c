@@ -80,16 +80,6 @@ static rtl_status draw_verilog(test_case *c, const vodr_machine *m, cosim_option
     return cosim_render(m, &c->input, &c->table, &c->view, options, &o->frame, &o->counters, &o->error);
 }
 
-static bool same(FILE *file, const outcome *a, const outcome *b)
-{
-    if (memcmp(&a->counters.cycles, &b->counters.cycles, sizeof a->counters.cycles) != 0) {
-        fprintf(file, "  cycles or stalls differ: %" PRIu64 " and %" PRIu64 " in total\n", a->counters.cycles.total,
-                b->counters.cycles.total);
-        return false;
-    }
-    return outcome_same_frame(file, a, b) && outcome_same_counters(file, a, b);
-}
-
 /* ---- random frames ---- */
 
 static void random_blocks(rng *r, cosim_options *o)
@@ -121,7 +111,7 @@ static bool agree(test_case *c, FILE *file)
         return true; /* it cannot be built for this volume */
     }
     rtl_status status = draw_verilog(c, &m, &options, &in_verilog);
-    bool good = status == RTL_OK && same(file, &in_c, &in_verilog);
+    bool good = status == RTL_OK && outcome_same(file, &in_c, &in_verilog);
     if (!good) {
         fprintf(file, "  %s\n", status == RTL_OK ? "Verilog and C differ" : in_verilog.error.text);
         case_print(file, c, &m);
@@ -191,7 +181,7 @@ static void test_mixes(void **state)
                 found++;
             } else {
                 assert_int_equal(status, RTL_OK);
-                assert_true(same(stderr, &in_c, &drawn));
+                assert_true(outcome_same(stderr, &in_c, &drawn));
             }
             outcome_free(&drawn);
         }

@@ -83,6 +83,16 @@ bool outcome_same_counters(FILE *file, const outcome *a, const outcome *b)
     return same;
 }
 
+bool outcome_same(FILE *file, const outcome *a, const outcome *b)
+{
+    const vodr_cycles *left = &a->counters.cycles, *right = &b->counters.cycles;
+    if (memcmp(left, right, sizeof *left) != 0) {
+        fprintf(file, "  cycles or stalls differ: %" PRIu64 " and %" PRIu64 " in total\n", left->total, right->total);
+        return false;
+    }
+    return outcome_same_frame(file, a, b) && outcome_same_counters(file, a, b);
+}
+
 static uint64_t hash_number(uint64_t hash, uint64_t number, int bytes)
 {
     for (int i = 0; i < bytes; i++) {

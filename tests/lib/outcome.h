@@ -26,6 +26,9 @@ bool outcome_same_frame(FILE *file, const outcome *a, const outcome *b);
 /* Whether all counters are the same; those that are not go to `file`. */
 bool outcome_same_counters(FILE *file, const outcome *a, const outcome *b);
 
+/* Whether frames, counters, cycles and stalls are the same; what is not goes to `file`. */
+bool outcome_same(FILE *file, const outcome *a, const outcome *b);
+
 /* Continues an FNV-1a hash over the frame's channels and the counters, in an order that is the same on every platform.
  */
 #define OUTCOME_HASH_START 0xCBF29CE484222325u
