@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_ARGUMENTS = 40, MAX_PATH = 4096, NOT_RUN = 127 };
+enum { MAX_ARGUMENTS = 40, NOT_RUN = 127 };
 
 extern char **environ;
 
@@ -137,11 +137,41 @@ static char *last_line(char *said)
     return newline ? newline + 1 : said;
 }
 
+/* Asks the script for the library's path; it makes what is not there. */
+static rtl_status ask(char *const *arguments, const char *module, char path[RTL_PATH_BYTES], vodr_error *error)
+{
+    char said[2 * RTL_PATH_BYTES];
+    int status = run(arguments, said, sizeof said);
+    const char *last = last_line(said);
+    size_t length = strlen(last);
+    if (status == NOT_RUN)
+        return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be run", arguments[0]);
+    if (status != 0)
+        return rtl_fail(error, status == 2 ? RTL_INVALID : RTL_ENVIRONMENT, "%s: %s", module, last);
+    if (length >= RTL_PATH_BYTES)
+        return rtl_fail(error, RTL_ENVIRONMENT, "%s: the path of its library is too long", module);
+    memcpy(path, last, length + 1);
+    return RTL_OK;
+}
+
+/* Whether the same was asked for before; else that is what will have been. */
+static bool asked_before(rtl_found *found, char *const *arguments)
+{
+    char asked[sizeof found->asked] = "";
+    size_t length = 0;
+    for (int i = 0; arguments[i] && length < sizeof asked; i++)
+        length += (size_t)snprintf(asked + length, sizeof asked - length, "%s\n", arguments[i]);
+    bool same = length < sizeof asked && strcmp(found->asked, asked) == 0;
+    memcpy(found->asked, length < sizeof asked ? asked : "", length < sizeof asked ? length + 1 : 1);
+    return same;
+}
+
 /* Finds the library's path, which is made when need be. */
 static rtl_status build(const rtl_source *source, const char *module, const char *file, const rtl_registers *registers,
-                        char *path, size_t size, vodr_error *error)
+                        char path[RTL_PATH_BYTES], vodr_error *error)
 {
-    char script[MAX_PATH], cache[MAX_PATH], headers[MAX_PATH], said[8192];
+    char script[RTL_PATH_BYTES], cache[RTL_PATH_BYTES], headers[RTL_PATH_BYTES];
+    rtl_found own = {.asked = ""}, *found = source->found ? source->found : &own;
     snprintf(script, sizeof script, "%s/scripts/rtl-library", source->root);
     snprintf(cache, sizeof cache, "%s/rtl", source->build);
     snprintf(headers, sizeof headers, "%s/gen", source->build);
@@ -152,20 +182,16 @@ static rtl_status build(const rtl_source *source, const char *module, const char
     int fixed = source->trace ? 6 : 5, count = add_parameters(text, registers, arguments, fixed);
     arguments[count] = NULL;
     free(text);
-    int status = run(arguments, said, sizeof said);
+    rtl_status status = RTL_OK;
+    if (!asked_before(found, arguments))
+        status = ask(arguments, module, found->path, error);
     for (int i = fixed; i < count; i++)
         free(arguments[i]);
-    const char *last = last_line(said);
-    if (status == 0) {
-        size_t length = strlen(last);
-        if (length >= size)
-            return rtl_fail(error, RTL_ENVIRONMENT, "%s: the path of its library is too long", module);
-        memcpy(path, last, length + 1);
-        return RTL_OK;
-    }
-    if (status == NOT_RUN)
-        return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be run", script);
-    return rtl_fail(error, status == 2 ? RTL_INVALID : RTL_ENVIRONMENT, "%s: %s", module, last);
+    if (status == RTL_OK)
+        memcpy(path, found->path, sizeof found->path);
+    else
+        found->asked[0] = '\0';
+    return status;
 }
 
 /* ---- checking ---- */
@@ -227,10 +253,10 @@ static rtl_status load(const char *path, rtl_library *l, vodr_error *error)
 static rtl_status open_module(const rtl_source *source, const char *module, const char *file,
                               const rtl_registers *registers, rtl_library *l, vodr_error *error)
 {
-    char path[MAX_PATH];
+    char path[RTL_PATH_BYTES];
     *l = (rtl_library){0};
     snprintf(l->file, sizeof l->file, "%s", source->file ? source->file : strrchr(file, '/') + 1);
-    rtl_status status = build(source, module, file, registers, path, sizeof path, error);
+    rtl_status status = build(source, module, file, registers, path, error);
     return status == RTL_OK ? load(path, l, error) : status;
 }
 
@@ -238,7 +264,7 @@ rtl_status rtl_library_open(const rtl_source *source, vodr_block block, const rt
                             vodr_error *error)
 {
     const char *module = signals_of(block)->name;
-    char file[MAX_PATH];
+    char file[RTL_PATH_BYTES];
     snprintf(file, sizeof file, "%s/rtl/%s.v", source->root, module);
     rtl_status status = open_module(source, module, source->file ? source->file : file, registers, l, error);
     if (status == RTL_OK)

@@ -14,12 +14,20 @@ typedef enum rtl_status {
     RTL_ENVIRONMENT, /* there is no Verilator, the library cannot be written or loaded */
 } rtl_status;
 
+enum { RTL_PATH_BYTES = 4096 };
+
+/* What was asked for last, and where it lies: who opens one library often has it looked for once. Zeroed at first. */
+typedef struct rtl_found {
+    char asked[2 * RTL_PATH_BYTES], path[RTL_PATH_BYTES];
+} rtl_found;
+
 /* Where a library comes from. */
 typedef struct rtl_source {
     const char *root;  /* of the project: its scripts/ and rtl/ */
     const char *build; /* where it is built: its gen/ has the header that hw/ gives, its rtl/ keeps libraries */
     const char *file;  /* the module's; NULL: ours */
     bool trace;        /* one that writes waveforms */
+    rtl_found *found;  /* the caller's; NULL: it is looked for each time */
 } rtl_source;
 
 typedef struct rtl_library {

@@ -61,11 +61,11 @@ static void check_inputs(const rtl_block *block)
 }
 
 /* The bench stops at the first difference. */
-static void begin(const block_bench *what, const char *settings, uint64_t seed, episode *e)
+static void begin(const block_bench *what, const char *settings, uint64_t seed, rtl_found *found, episode *e)
 {
     vodr_error error;
     vodr_machine machine;
-    const rtl_source source = {.root = VODR_ROOT, .build = VODR_BUILD};
+    const rtl_source source = {.root = VODR_ROOT, .build = VODR_BUILD, .found = found};
     bench *b = &e->bench;
     assert_int_equal(vodr_machine_named("paper-16", &machine, &error), VODR_OK);
     if (bench_set(&machine, settings, &error) != VODR_OK || bench_open(b, what, &machine, seed, &error) != VODR_OK) {
@@ -85,10 +85,11 @@ static void end(episode *e)
 }
 
 /* Up to `count` transactions; *count is then how many there were. */
-static bool run_episode(const block_bench *what, const char *settings, uint64_t seed, uint64_t *count, uint64_t *cycles)
+static bool run_episode(const block_bench *what, const char *settings, uint64_t seed, rtl_found *found, uint64_t *count,
+                        uint64_t *cycles)
 {
     episode e;
-    begin(what, settings, seed, &e);
+    begin(what, settings, seed, found, &e);
     what->traffic(&e.bench, *count);
     const difference d = e.pair.first;
     uint64_t cycle = e.bench.cycles;
@@ -110,12 +111,13 @@ static bool run_episode(const block_bench *what, const char *settings, uint64_t 
 static void test_block(void **state)
 {
     const block_bench *what = *state;
+    rtl_found found = {.asked = ""};
     bool good = true;
     for (const char *const *m = what->machines; *m; m++) {
         uint64_t cycles = 0, done = 0;
         for (uint64_t seed = first_seed; good && done < transactions; seed++) {
             uint64_t left = transactions - done, count = left < EPISODE_TRANSACTIONS ? left : EPISODE_TRANSACTIONS;
-            good = run_episode(what, *m, seed, &count, &cycles);
+            good = run_episode(what, *m, seed, &found, &count, &cycles);
             done += count;
         }
         printf("%s, paper-16 %s: %" PRIu64 " transactions in %" PRIu64 " cycles\n", signals_of(what->block)->name, *m,
