@@ -71,15 +71,20 @@ static bool draw_top(const frame *f, bool alone, uint64_t *cycles, double *time_
     return good;
 }
 
+static void begin(void *begin_s)
+{
+    *(double *)begin_s = stopwatch_now_s();
+}
+
 static bool draw_blocks(const frame *f, uint64_t *cycles, double *time_s)
 {
-    cosim_options options = {.root = VODR_ROOT, .build = VODR_BUILD};
+    double begin_s = 0;
+    cosim_options options = {.root = VODR_ROOT, .build = VODR_BUILD, .begin = begin, .begin_context = &begin_s};
     vodr_error error;
     vodr_frame drawn;
     vodr_counters counters;
     for (int b = 0; b < VODR_BLOCK_COUNT; b++)
         options.replaced[b] = true;
-    double begin_s = stopwatch_now_s();
     if (cosim_render(f->machine, &f->cube->volume, &f->cube->table, f->view, &options, &drawn, &counters, &error) !=
         RTL_OK) {
         fprintf(stderr, "%s: %s\n", program, error.text);
