@@ -1,7 +1,9 @@
-/* view.c - which registers the machine accepts. */
+/* view.c - the registers by their names, and which the machine accepts. */
 #include "view.h"
 
 #include <inttypes.h>
+#include <stddef.h>
+#include <string.h>
 
 #include "error.h"
 
@@ -89,4 +91,92 @@ vodr_status vodr_view_check(const vodr_view *v, const int32_t dims_vox[3], vodr_
         status = check_positions(v, c, error);
     }
     return status;
+}
+
+/* ---- registers by name ---- */
+
+enum { UNSIGNED_32 = -4 };
+
+/* A register's field; its bytes: 1, a bool; 4, 8, signed; or UNSIGNED_32. */
+typedef struct register_field {
+    const char *name;
+    size_t offset;
+    int bytes;
+} register_field;
+
+#define FIELD(member, bytes)                                                                                           \
+    {                                                                                                                  \
+#member, offsetof(vodr_view, member), bytes                                                                    \
+    }
+#define AXES(member)                                                                                                   \
+    {#member "_x", offsetof(vodr_view, member[0]), 8}, {#member "_y", offsetof(vodr_view, member[1]), 8},              \
+    {                                                                                                                  \
+#member "_z", offsetof(vodr_view, member[2]), 8                                                                \
+    }
+
+static const register_field register_fields[] = {
+    FIELD(width_px, 4),
+    FIELD(height_px, 4),
+    FIELD(slices, 4),
+    FIELD(perspective, 1),
+    FIELD(shift, 4),
+    FIELD(footprint, UNSIGNED_32),
+    AXES(base),
+    AXES(step_u),
+    AXES(step_v),
+    AXES(step_s),
+    FIELD(depth_first, 8),
+    FIELD(depth_step, 8),
+};
+
+enum { REGISTER_FIELDS = sizeof register_fields / sizeof *register_fields, VOLUME_REGISTERS = 3 };
+_Static_assert((int)REGISTER_FIELDS + (int)VOLUME_REGISTERS == (int)VODR_REGISTER_COUNT,
+               "a register of hw/registers.txt has no field");
+
+static const register_field *field_of(const char *name)
+{
+    for (int i = 0; i < REGISTER_FIELDS; i++)
+        if (strcmp(register_fields[i].name, name) == 0)
+            return &register_fields[i];
+    return NULL;
+}
+
+static int64_t field_value(const register_field *f, const vodr_view *view)
+{
+    const void *at = (const char *)view + f->offset;
+    switch (f->bytes) {
+    case 1: return *(const bool *)at;
+    case 4: return *(const int32_t *)at;
+    case UNSIGNED_32: return *(const uint32_t *)at;
+    default: return *(const int64_t *)at;
+    }
+}
+
+bool vodr_register_get(const char *name, const vodr_view *view, const int32_t dims_vox[3], int64_t *value)
+{
+    static const char *const volume[VOLUME_REGISTERS] = {"dim_x", "dim_y", "dim_z"};
+    const register_field *f = field_of(name);
+    if (f)
+        *value = field_value(f, view);
+    for (int i = 0; i < VOLUME_REGISTERS && !f; i++)
+        if (strcmp(volume[i], name) == 0) {
+            *value = dims_vox[i];
+            return true;
+        }
+    return f != NULL;
+}
+
+bool vodr_register_set(const char *name, int64_t value, vodr_view *view)
+{
+    const register_field *f = field_of(name);
+    void *at = f ? (char *)view + f->offset : NULL;
+    if (!f)
+        return false;
+    switch (f->bytes) {
+    case 1: *(bool *)at = value == 1; break;
+    case 4: *(int32_t *)at = (int32_t)value; break;
+    case UNSIGNED_32: *(uint32_t *)at = (uint32_t)value; break;
+    default: *(int64_t *)at = value;
+    }
+    return field_value(f, view) == value;
 }

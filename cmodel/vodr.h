@@ -115,6 +115,13 @@ typedef struct vodr_view {
     int64_t depth_first, depth_step;
 } vodr_view;
 
+/* A register of hw/registers.txt by its name, as a view of a volume of these sides has it. False when there is none. */
+bool vodr_register_get(const char *name, const vodr_view *view, const int32_t dims_vox[3], int64_t *value);
+
+/* Writes a register of the view. False when it has none of this name (dim_x, dim_y, dim_z are the volume's) or its
+ * field cannot hold the value; what the machine accepts vodr_view_check() says. */
+bool vodr_register_set(const char *name, int64_t value, vodr_view *view);
+
 /* Whether every position of the view fits its format; the sentence names the register. */
 vodr_status vodr_view_check(const vodr_view *view, const int32_t dims_vox[3], vodr_error *error);
 

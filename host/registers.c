@@ -1,44 +1,20 @@
 /* registers.c - everything the machine is given for a frame but the voxels, as JSON (--registers). */
 #include "registers.h"
 
-#include <string.h>
-
 #include "json.h"
-
-enum { REGISTERS = 23 };
-
-typedef struct named_value {
-    const char *name;
-    int64_t value;
-} named_value;
-
-static void list_registers(const int32_t dims_vox[3], const vodr_view *v, named_value list[REGISTERS])
-{
-    const named_value values[REGISTERS] = {
-        {"dim_x", dims_vox[0]},          {"dim_y", dims_vox[1]},        {"dim_z", dims_vox[2]},
-        {"width_px", v->width_px},       {"height_px", v->height_px},   {"slices", v->slices},
-        {"perspective", v->perspective}, {"shift", v->shift},           {"footprint", v->footprint},
-        {"base_x", v->base[0]},          {"base_y", v->base[1]},        {"base_z", v->base[2]},
-        {"step_u_x", v->step_u[0]},      {"step_u_y", v->step_u[1]},    {"step_u_z", v->step_u[2]},
-        {"step_v_x", v->step_v[0]},      {"step_v_y", v->step_v[1]},    {"step_v_z", v->step_v[2]},
-        {"step_s_x", v->step_s[0]},      {"step_s_y", v->step_s[1]},    {"step_s_z", v->step_s[2]},
-        {"depth_first", v->depth_first}, {"depth_step", v->depth_step},
-    };
-    memcpy(list, values, sizeof values);
-}
-
-_Static_assert((int)REGISTERS == (int)VODR_REGISTER_COUNT, "a register of hw/registers.txt is not written");
 
 static json_t *registers_object(const scene *s)
 {
-    named_value list[REGISTERS];
-    list_registers(s->densities.dims_vox, &s->view, list);
     json_t *object = json_object();
-    for (size_t i = 0; i < REGISTERS; i++)
-        if (json_object_set_new(object, list[i].name, json_integer(list[i].value)) != 0) {
+    for (size_t i = 0; i < VODR_REGISTER_COUNT; i++) {
+        const char *name = vodr_hw_registers[i].name;
+        int64_t value;
+        if (!vodr_register_get(name, &s->view, s->densities.dims_vox, &value) ||
+            json_object_set_new(object, name, json_integer(value)) != 0) {
             json_decref(object);
             return NULL;
         }
+    }
     return object;
 }
 

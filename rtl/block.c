@@ -1,12 +1,12 @@
 #include "block.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "modules.h"
 #include "pixel_word.h"
-#include "texture_unit.h"
-#include "volume_divider.h"
 
 enum { RESET_CYCLES = 2 };
 
@@ -237,51 +237,41 @@ static rtl_status connect_memory(rtl_block *b, const block_setup *setup, vodr_er
     return RTL_OK;
 }
 
-/* Writes entries through a block's ports NAME_write, NAME_address and NAME_data while it is held in reset. */
-static void load_table(rtl_block *b, const char *write, const char *address, const char *data, size_t count,
-                       uint64_t (*entry)(const block_setup *setup, size_t i), const block_setup *setup)
+static const vodr_rtl_port *table_port(const rtl_block *b, const char *table, const char *what)
 {
-    const vodr_rtl_port *w = rtl_library_port(&b->library, write), *a = rtl_library_port(&b->library, address),
-                        *d = rtl_library_port(&b->library, data);
-    if (!w || !a || !d)
-        return;
-    put(w->data, 1, 1);
-    for (size_t i = 0; i < count; i++) {
-        uint64_t value = entry(setup, i);
-        put(a->data, a->width_bits, i);
-        put(d->data, d->width_bits < 64 ? d->width_bits : 64, value);
-        if (d->width_bits > 64) /* the bit above a word of 64 */
-            ((uint32_t *)d->data)[2] = setup->tables->dead[i];
+    char name[32];
+    snprintf(name, sizeof name, "%s_%s", table, what);
+    return rtl_library_port(&b->library, name);
+}
+
+/* Writes the table of a block, where the module has its ports, while it is held in reset. */
+static void load_table(rtl_block *b, vodr_block block, const block_setup *setup)
+{
+    const char *table = rtl_module_of(block)->table;
+    const vodr_rtl_port *w = table_port(b, table, "write"), *a = table_port(b, table, "address"),
+                        *d = table_port(b, table, "data");
+    int64_t entries = w && a && d ? rtl_table_entries(block, setup) : 0;
+    for (int64_t i = 0; i < entries; i++) {
+        uint8_t entry[RTL_TABLE_BYTES];
+        rtl_table_entry(block, setup, i, entry);
+        put(w->data, 1, 1);
+        put(a->data, a->width_bits, (uint64_t)i);
+        put(d->data, d->width_bits < 64 ? d->width_bits : 64, word_load(entry, 8));
+        if (d->width_bits > 64)
+            ((uint32_t *)d->data)[2] = entry[8];
         tick(b);
+        put(w->data, 1, 0);
     }
-    put(w->data, 1, 0);
-}
-
-static uint64_t colour_entry(const block_setup *setup, size_t i)
-{
-    int32_t bits = 8 * pixel_bytes(setup->machine);
-    uint64_t dead = bits < 64 ? (uint64_t)setup->tables->dead[i] << bits : 0;
-    return pixel_word(setup->machine, setup->tables->colours[i]) | dead;
-}
-
-static uint64_t empty_entry(const block_setup *setup, size_t i)
-{
-    return setup->walk->empty[i];
 }
 
 static void reset(rtl_block *b, const block_setup *setup)
 {
-    const volume_divider *walk = setup->walk;
     *b->rst = 1;
     for (int i = 0; i < RESET_CYCLES; i++)
         tick(b);
-    const bool top = b->block == RTL_TOP;
-    if (top || b->block == VODR_BLOCK_TEXTURE_UNIT)
-        load_table(b, "table_write", "table_address", "table_data", (size_t)1 << setup->machine->density_bits,
-                   colour_entry, setup);
-    if ((top || b->block == VODR_BLOCK_VOLUME_DIVIDER) && walk->empty)
-        load_table(b, "empty_write", "empty_address", "empty_data",
-                   (size_t)walk->bricks[0] * (size_t)walk->bricks[1] * (size_t)walk->bricks[2], empty_entry, setup);
+    for (int block = 0; block < VODR_BLOCK_COUNT; block++)
+        if (rtl_module_of((vodr_block)block)->table && (b->block == RTL_TOP || b->block == (vodr_block)block))
+            load_table(b, (vodr_block)block, setup);
     tick(b);
     *b->rst = 0;
 }

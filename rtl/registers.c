@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "layout.h"
+#include "pixel_word.h"
+#include "texture_unit.h"
 #include "volume_divider.h"
 
 struct rtl_registers {
@@ -19,9 +21,10 @@ struct rtl_registers {
 
 /* ---- registers ---- */
 
+/* A derived one. */
 typedef struct field {
     const char *name;
-    size_t offset, bytes; /* 1: a bool; 4, 8: signed */
+    size_t offset, bytes; /* 4, 8: signed */
 } field;
 
 #define HERE(name, member)                                                                                             \
@@ -34,18 +37,6 @@ typedef struct field {
         HERE("bound_" name "_hi", bounds.row.hi), HERE("bound_" name "_fraction", bounds.row.fraction)
 
 static const field fields[] = {
-    AXES("dim", dims_vox),
-    HERE("width_px", view.width_px),
-    HERE("height_px", view.height_px),
-    HERE("slices", view.slices),
-    HERE("perspective", view.perspective),
-    HERE("shift", view.shift),
-    AXES("base", view.base),
-    AXES("step_u", view.step_u),
-    AXES("step_v", view.step_v),
-    AXES("step_s", view.step_s),
-    HERE("depth_first", view.depth_first),
-    HERE("depth_step", view.depth_step),
     /* derived: the divider's */
     AXES("edge", edge_vox),
     AXES("bricks", bricks),
@@ -110,7 +101,12 @@ static bool machine_parameter(const vodr_machine *m, const char *name, int32_t *
 
 bool rtl_register(const rtl_registers *r, const char *name, uint64_t *value)
 {
+    int64_t wide;
     int32_t narrow;
+    if (vodr_register_get(name, &r->view, r->dims_vox, &wide)) {
+        *value = (uint64_t)wide;
+        return true;
+    }
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
         const char *at = (const char *)r + fields[i].offset;
         if (strcmp(fields[i].name, name) != 0)
@@ -118,8 +114,6 @@ bool rtl_register(const rtl_registers *r, const char *name, uint64_t *value)
         memcpy(fields[i].bytes == 8 ? (void *)value : (void *)&narrow, at, fields[i].bytes);
         if (fields[i].bytes == 4)
             *value = (uint64_t)(int64_t)narrow;
-        if (fields[i].bytes == sizeof(bool))
-            *value = *(const bool *)at;
         return true;
     }
     if (!machine_parameter(&r->machine, name, &narrow))
@@ -182,4 +176,26 @@ bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
         return false;
     *value = narrow;
     return true;
+}
+
+/* ---- tables ---- */
+
+int64_t rtl_table_entries(vodr_block block, const block_setup *setup)
+{
+    const int32_t *bricks = setup->walk->bricks;
+    if (block == VODR_BLOCK_TEXTURE_UNIT)
+        return (int64_t)1 << setup->machine->density_bits;
+    return setup->walk->empty ? (int64_t)bricks[0] * bricks[1] * bricks[2] : 0;
+}
+
+void rtl_table_entry(vodr_block block, const block_setup *setup, int64_t i, uint8_t entry[RTL_TABLE_BYTES])
+{
+    const vodr_machine *m = setup->machine;
+    memset(entry, 0, RTL_TABLE_BYTES);
+    if (block == VODR_BLOCK_VOLUME_DIVIDER) {
+        entry[0] = setup->walk->empty[i];
+        return;
+    }
+    word_store(entry, pixel_word(m, setup->tables->colours[i]), pixel_bytes(m));
+    entry[pixel_bytes(m)] = setup->tables->dead[i];
 }

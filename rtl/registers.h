@@ -1,11 +1,20 @@
 /* registers.h - what a Verilog block is told beside its ports, by name (docs/cosimulation.md):
  * - registers: inputs that hold still for a frame. Those of hw/registers.txt, the machine's parameters by their own
  *   names, and what is derived from both once a frame;
- * - parameters of its module, in capitals: what widths and depths of memories follow from. */
+ * - parameters of its module, in capitals: what widths and depths of memories follow from;
+ * - the texture unit's and the divider's table, written while rst is up. */
 #ifndef VODR_REGISTERS_H
 #define VODR_REGISTERS_H
 
 #include "clocked_blocks.h"
+
+enum { RTL_TABLE_BYTES = 9 };
+
+/* How many entries a frame gives the table of a block that has one (modules.h). */
+int64_t rtl_table_entries(vodr_block block, const block_setup *setup);
+
+/* An entry, lowest byte first: a colour, and above it whether it is dead; or whether a brick is left out. */
+void rtl_table_entry(vodr_block block, const block_setup *setup, int64_t i, uint8_t entry[RTL_TABLE_BYTES]);
 
 /* Everything a frame's registers are taken from. */
 typedef struct rtl_registers rtl_registers;

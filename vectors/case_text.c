@@ -18,91 +18,26 @@ enum { MOST_PIXELS = 1 << 22, MOST_BRICKS = 1 << 16, MOST_VOXELS = 1 << 18, MOST
 
 /* ---- the view ---- */
 
-typedef struct view_field {
-    const char *name;
-    size_t offset, bytes;
-} view_field;
-
-#define FIELD(member)                                                                                                  \
-    {                                                                                                                  \
-#member, offsetof(vodr_view, member), sizeof(((vodr_view *)0)->member)                                         \
-    }
-#define AXES(member)                                                                                                   \
-    {#member "_x", offsetof(vodr_view, member[0]), 8}, {#member "_y", offsetof(vodr_view, member[1]), 8},              \
-    {                                                                                                                  \
-#member "_z", offsetof(vodr_view, member[2]), 8                                                                \
-    }
-
-static const view_field view_fields[] = {FIELD(width_px), FIELD(height_px), FIELD(slices),      FIELD(perspective),
-                                         FIELD(shift),    FIELD(footprint), AXES(base),         AXES(step_u),
-                                         AXES(step_v),    AXES(step_s),     FIELD(depth_first), FIELD(depth_step)};
-
-enum { VIEW_FIELDS = sizeof view_fields / sizeof *view_fields };
-
-static int64_t view_value(const vodr_view *view, const view_field *f)
+/* The name of register i, in the order of hw/registers.txt; NULL for those of the volume. */
+static const char *view_register(int i)
 {
-    const char *at = (const char *)view + f->offset;
-    int64_t value = 0;
-    int32_t narrow;
-    if (f->bytes == sizeof value)
-        memcpy(&value, at, sizeof value);
-    else if (f->bytes == sizeof(bool))
-        value = *(const bool *)at;
-    else {
-        memcpy(&narrow, at, sizeof narrow);
-        value = f->offset == offsetof(vodr_view, footprint) ? (int64_t)(uint32_t)narrow : narrow;
-    }
-    return value;
-}
-
-static bool set_view_value(vodr_view *view, const view_field *f, int64_t value)
-{
-    char *at = (char *)view + f->offset;
-    uint32_t narrow = (uint32_t)value;
-    if (f->bytes == sizeof value)
-        memcpy(at, &value, sizeof value);
-    else if (f->bytes == sizeof(bool))
-        *(bool *)at = value == 1;
-    else
-        memcpy(at, &narrow, sizeof narrow);
-    return view_value(view, f) == value;
+    const char *name = vodr_hw_registers[i].name;
+    return strncmp(name, "dim_", 4) == 0 ? NULL : name;
 }
 
 /* ---- tables ---- */
 
-enum { WORD_BYTES = 9 };
-
-static int64_t table_entries(const bench *b, vodr_block block)
+static bool set_table_word(bench *b, vodr_block block, int64_t i, const uint8_t word[RTL_TABLE_BYTES])
 {
-    const int32_t *bricks = b->setup.walk->bricks;
-    if (block == VODR_BLOCK_TEXTURE_UNIT)
-        return (int64_t)1 << b->machine.density_bits;
-    return b->setup.walk->empty ? (int64_t)bricks[0] * bricks[1] * bricks[2] : 0;
-}
-
-/* An entry as the Verilog has it: a colour, and above it whether it is dead; or whether a brick is empty. */
-static void table_word(const bench *b, vodr_block block, int64_t i, uint8_t word[WORD_BYTES])
-{
-    memset(word, 0, WORD_BYTES);
-    if (block == VODR_BLOCK_VOLUME_DIVIDER) {
-        word[0] = b->setup.walk->empty[i];
-        return;
-    }
-    word_store(word, pixel_word(&b->machine, b->setup.tables->colours[i]), pixel_bytes(&b->machine));
-    word[pixel_bytes(&b->machine)] = b->setup.tables->dead[i];
-}
-
-static bool set_table_word(bench *b, vodr_block block, int64_t i, const uint8_t word[WORD_BYTES])
-{
-    uint8_t is[WORD_BYTES];
+    uint8_t is[RTL_TABLE_BYTES];
     if (block == VODR_BLOCK_VOLUME_DIVIDER) {
         b->own.walk.empty[i] = word[0];
     } else {
         b->own.tables.colours[i] = pixel_of_word(&b->machine, word_load(word, pixel_bytes(&b->machine)));
         b->own.tables.dead[i] = word[pixel_bytes(&b->machine)];
     }
-    table_word(b, block, i, is);
-    return memcmp(is, word, WORD_BYTES) == 0;
+    rtl_table_entry(block, &b->setup, i, is);
+    return memcmp(is, word, RTL_TABLE_BYTES) == 0;
 }
 
 /* ---- writing ---- */
@@ -110,7 +45,7 @@ static bool set_table_word(bench *b, vodr_block block, int64_t i, const uint8_t 
 static void put_digits(FILE *file, const void *value, int32_t width_bits)
 {
     char text[32];
-    *column_put(text, value, width_bits, WORD_BYTES) = '\0';
+    *column_put(text, value, width_bits, RTL_TABLE_BYTES) = '\0';
     fputs(text, file);
 }
 
@@ -140,11 +75,11 @@ static bool put_registers(FILE *file, vodr_block block, const bench *b)
 
 static void put_table(FILE *file, vodr_block block, const bench *b)
 {
-    int64_t entries = table_entries(b, block);
+    int64_t entries = rtl_table_entries(block, &b->setup);
     fprintf(file, "table %" PRId64, entries);
     for (int64_t i = 0; i < entries; i++) {
-        uint8_t word[WORD_BYTES];
-        table_word(b, block, i, word);
+        uint8_t word[RTL_TABLE_BYTES];
+        rtl_table_entry(block, &b->setup, i, word);
         fputc(' ', file);
         put_digits(file, word, rtl_table_bits(block, &b->machine));
     }
@@ -157,8 +92,11 @@ bool case_text_put(FILE *file, const char *name, uint64_t seed, const vectors_ch
     fprintf(file, "case %s seed=%016" PRIx64 "\nmachine ", name, seed);
     header_put_machine(file, &b->machine, &choice->machine, ' ');
     fputs("\nview", file);
-    for (int i = 0; i < VIEW_FIELDS; i++)
-        fprintf(file, " %s=%" PRId64, view_fields[i].name, view_value(&b->scene.view, &view_fields[i]));
+    for (int i = 0; i < VODR_REGISTER_COUNT; i++) {
+        int64_t value;
+        if (view_register(i) && vodr_register_get(view_register(i), &b->scene.view, dims, &value))
+            fprintf(file, " %s=%" PRId64, view_register(i), value);
+    }
     fprintf(file, "\nvolume %" PRId32 "x%" PRId32 "x%" PRId32 "\n", dims[0], dims[1], dims[2]);
     if (b->scene.voxels)
         put_voxels(file, &b->scene.input);
@@ -211,15 +149,17 @@ static vectors_status read_view(const reader *r)
 {
     const char *rest;
     vectors_status status = next_line(r, "view", &rest);
-    for (int i = 0; status == VECTORS_OK && i < VIEW_FIELDS; i++) {
-        const view_field *f = &view_fields[i];
-        size_t length = strlen(f->name);
+    for (int i = 0; status == VECTORS_OK && i < VODR_REGISTER_COUNT; i++) {
+        const char *name = view_register(i);
+        if (!name)
+            continue;
+        size_t length = strlen(name);
         int64_t value;
         int taken = 0;
-        bool named = strncmp(rest, f->name, length) == 0 && rest[length] == '=';
+        bool named = strncmp(rest, name, length) == 0 && rest[length] == '=';
         if (!named || sscanf(rest + length + 1, "%20" SCNd64 "%n", &value, &taken) != 1 ||
-            !set_view_value(&r->b->scene.view, f, value)) {
-            vodr_fail(r->error, VODR_INVALID, "%s=NUMBER must stand here, in its range", f->name);
+            !vodr_register_set(name, value, &r->b->scene.view)) {
+            vodr_fail(r->error, VODR_INVALID, "%s=NUMBER must stand here, in its range", name);
             return VECTORS_INVALID;
         }
         rest += length + 1 + (size_t)taken;
@@ -277,10 +217,11 @@ static vectors_status read_voxels(const reader *r)
 }
 
 /* One word of digits; the text behind it and the blank after it. */
-static bool next_word(const char **text, int32_t width_bits, uint8_t word[WORD_BYTES])
+static bool next_word(const char **text, int32_t width_bits, uint8_t word[RTL_TABLE_BYTES])
 {
     size_t length = strcspn(*text, " ");
-    bool good = column_known(*text, length) == COLUMN_DIGITS && column_get(*text, length, width_bits, word, WORD_BYTES);
+    bool good =
+        column_known(*text, length) == COLUMN_DIGITS && column_get(*text, length, width_bits, word, RTL_TABLE_BYTES);
     *text += length;
     *text += **text == ' ';
     return good && length;
@@ -295,7 +236,7 @@ static vectors_status read_registers(const reader *r)
         return VECTORS_ENVIRONMENT;
     for (const module_register *m = rtl_module_of(r->choice->block)->registers; status == VECTORS_OK && m->name; m++) {
         uint64_t value = 0, must = 0;
-        uint8_t word[WORD_BYTES];
+        uint8_t word[RTL_TABLE_BYTES];
         bool good = next_word(&rest, m->width_bits, word);
         value = word_load(word, 8);
         rtl_register(registers, m->name, &must);
@@ -317,7 +258,7 @@ static vectors_status read_table(const reader *r)
 {
     const char *rest;
     vodr_block block = r->choice->block;
-    int64_t entries = table_entries(r->b, block), count = -1;
+    int64_t entries = rtl_table_entries(block, &r->b->setup), count = -1;
     vectors_status status = next_line(r, "table", &rest);
     int taken = 0;
     if (status != VECTORS_OK)
@@ -329,7 +270,7 @@ static vectors_status read_table(const reader *r)
     rest += taken;
     rest += *rest == ' ';
     for (int64_t i = 0; i < entries; i++) {
-        uint8_t word[WORD_BYTES];
+        uint8_t word[RTL_TABLE_BYTES];
         if (next_word(&rest, rtl_table_bits(block, &r->b->machine), word) && set_table_word(r->b, block, i, word))
             continue;
         vodr_fail(r->error, VODR_INVALID, "entry %" PRId64 " of the table is missing, or is no such entry", i);
