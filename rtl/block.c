@@ -117,8 +117,6 @@ static void clock_memory(rtl_block *b)
                               .write_data = b->memory_ports.write_data};
     memcpy(b->memory_ports.read_data, external_memory_answer(&b->memory), (size_t)b->memory.beat_bytes);
     external_memory_clock(&b->memory, &command);
-    b->wrote_bytes = command.write ? command.write_bytes : 0;
-    b->wrote_address = command.address;
 }
 
 static void sample_all(rtl_block *b, void *out)

@@ -26,8 +26,6 @@ typedef struct rtl_block {
     external_memory memory; /* the frame buffer's */
     bool dumps;             /* add what signals hold to the waveform, at `time` and the unit after */
     uint64_t time;
-    int64_t wrote_address; /* what was written there in this cycle */
-    int32_t wrote_bytes;
     struct {
         const uint8_t *read, *write, *write_data;
         const void *address, *write_bytes;

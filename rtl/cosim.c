@@ -237,6 +237,15 @@ static rtl_status tell_hanging(const cosim *c, vodr_error *error)
     return RTL_DIFFERS;
 }
 
+/* Whether something could not be kept for want of memory, so that what differs may differ for that alone. */
+static bool failed(const cosim *c)
+{
+    bool any = c->places.failed;
+    for (int b = 0; b < VODR_BLOCK_COUNT; b++)
+        any |= c->streams[b] && transactions_failed(c->streams[b]);
+    return any;
+}
+
 rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                         const vodr_view *view, const cosim_options *options, vodr_frame *frame, vodr_counters *counters,
                         vodr_error *error)
@@ -251,12 +260,12 @@ rtl_status cosim_render(const vodr_machine *machine, const vodr_volume *volume, 
         options->begin(options->begin_context);
     if (status == RTL_OK)
         block = draw(&c, options);
-    if (block != NO_BLOCK)
+    if (failed(&c))
+        status = rtl_fail(error, RTL_NO_MEMORY, "no memory for what is under way");
+    else if (block != NO_BLOCK)
         status = tell_difference(&c, &in, options, block, error);
     else if (status == RTL_OK && hangs(&c))
         status = tell_hanging(&c, error);
-    if (status == RTL_OK && c.places.failed)
-        status = rtl_fail(error, RTL_NO_MEMORY, "no memory for the fragments under way");
     if (status == RTL_OK && clocked_readout(c.machine, frame, counters, error) != VODR_OK)
         status = RTL_NO_MEMORY;
     cosim_close(&c);

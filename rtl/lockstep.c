@@ -57,30 +57,27 @@ bool lockstep_compare(vodr_block block, const vodr_machine *machine, const void 
     return true;
 }
 
-/* ---- faces ---- */
-
-void lockstep_compare_memory(const storage *expected, const storage *got, int64_t address, int64_t bytes, difference *d)
+void lockstep_compare_memory(const storage *expected, const storage *got, difference *d)
 {
     static const signal_field memory_field = {.name = "memory_write_data", .when = SIGNAL_ALWAYS};
     static const signal_port memory_port = {.fields = &memory_field, .count = 1, .output = true};
-    const uint8_t *a = expected->lines + address, *b = got->lines + address;
-    if (memcmp(a, b, (size_t)bytes) == 0)
+    const uint8_t *a = expected->lines, *b = got->lines;
+    const size_t bytes = (size_t)expected->texture_base;
+    if (memcmp(a, b, bytes) == 0)
         return;
     *d = (difference){.found = true, .port = &memory_port, .field = &memory_field};
-    difference_tell(a, b, (size_t)bytes, d->expected);
-    difference_tell(b, a, (size_t)bytes, d->got);
+    difference_tell(a, b, bytes, d->expected);
+    difference_tell(b, a, bytes, d->got);
 }
 
-/* Memories are compared where a beat was written: C wrote it with its grant, and has granted no write after it. */
+/* ---- faces ---- */
+
 #define CLOCK(NAME, name)                                                                                              \
     static void clock_##name(void *state, const name##_in *in, name##_out *out)                                        \
     {                                                                                                                  \
         lockstep *l = state;                                                                                           \
         rtl_block_clock(&l->rtl, in, out);                                                                             \
         l->inner.name.clock(l->inner.name.state, in, &l->expected.name);                                               \
-        if (l->rtl.wrote_bytes && !l->first.found)                                                                     \
-            lockstep_compare_memory(&l->behind, l->rtl.memory.storage, l->rtl.wrote_address, l->rtl.wrote_bytes,       \
-                                    &l->first);                                                                        \
         if (!l->first.found)                                                                                           \
             lockstep_compare(VODR_BLOCK_##NAME, l->rtl.machine, &l->expected.name, out, &l->first);                    \
     }
@@ -143,6 +140,6 @@ void lockstep_close(lockstep *l, block_faces *faces)
 bool lockstep_end(lockstep *l)
 {
     if (l->behind.lines && !l->first.found)
-        lockstep_compare_memory(&l->behind, l->rtl.memory.storage, 0, l->behind.texture_base, &l->first);
+        lockstep_compare_memory(&l->behind, l->rtl.memory.storage, &l->first);
     return !l->first.found;
 }

@@ -20,8 +20,7 @@ void difference_tell(const uint8_t *value, const uint8_t *other, size_t bytes, c
 
 /* Compares what two memories hold of the frame buffer; the first difference is told in *d, which is left alone when
  * there is none. */
-void lockstep_compare_memory(const storage *expected, const storage *got, int64_t address, int64_t bytes,
-                             difference *d);
+void lockstep_compare_memory(const storage *expected, const storage *got, difference *d);
 
 /* DO(NAME, name) for each block. */
 #define LOCKSTEP_BLOCKS(DO)                                                                                            \

@@ -83,5 +83,5 @@ void top_end(top *t, const clocked *expected)
     if (t->first.found)
         return;
     t->block = VODR_BLOCK_FRAME_BUFFER;
-    lockstep_compare_memory(clocked_setup(expected)->storage, mine, 0, mine->texture_base, &t->first);
+    lockstep_compare_memory(clocked_setup(expected)->storage, mine, &t->first);
 }

@@ -204,7 +204,7 @@ bool transactions_end(transactions *t)
         t->reference->done = !clocked_step(t->reference->machine, NULL);
     const storage *mine = clocked_setup(t->machine)->storage, *theirs = clocked_setup(t->reference->machine)->storage;
     if (!t->first.found && t->rtl.block == VODR_BLOCK_FRAME_BUFFER)
-        lockstep_compare_memory(theirs, mine, 0, mine->texture_base, &t->first);
+        lockstep_compare_memory(theirs, mine, &t->first);
     return !t->first.found;
 }
 
@@ -285,4 +285,9 @@ rtl_block *transactions_block(transactions *t)
 const difference *transactions_first(const transactions *t)
 {
     return &t->first;
+}
+
+bool transactions_failed(const transactions *t)
+{
+    return t->failed;
 }

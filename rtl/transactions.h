@@ -26,6 +26,9 @@ rtl_block *transactions_block(transactions *t);
 /* What moved and should not have, or as something else. */
 const difference *transactions_first(const transactions *t);
 
+/* Whether there was no memory for what moved. */
+bool transactions_failed(const transactions *t);
+
 /* After the last cycle: false when something should have moved still, which transactions_first() then tells. */
 bool transactions_end(transactions *t);
 
