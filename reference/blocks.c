@@ -48,6 +48,29 @@ static void block_range(const reference_volume *v, int32_t edge, const int32_t a
     *most = max + margin;
 }
 
+/* Replaces each of `count` values, `stride` apart, by the greatest of itself and its neighbours. */
+static void widen(float *value, int32_t count, size_t stride)
+{
+    float before = value[0];
+    for (int32_t i = 0; i < count; i++) {
+        float own = value[(size_t)i * stride], after = i + 1 < count ? value[(size_t)(i + 1) * stride] : own;
+        value[(size_t)i * stride] = fmaxf(own, fmaxf(before, after));
+        before = own;
+    }
+}
+
+static void fill_around(blocks *b)
+{
+    const size_t stride[3] = {1, (size_t)b->count[0], (size_t)b->count[0] * (size_t)b->count[1]};
+    memcpy(b->around, b->most, blocks_count(b) * sizeof *b->around);
+    for (int a = 0; a < 3; a++) {
+        const int u = (a + 1) % 3, v = (a + 2) % 3;
+        for (int32_t j = 0; j < b->count[v]; j++)
+            for (int32_t i = 0; i < b->count[u]; i++)
+                widen(b->around + (size_t)j * stride[v] + (size_t)i * stride[u], b->count[a], stride[a]);
+    }
+}
+
 reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error)
 {
     *b = (blocks){.edge_vox = edge_vox};
@@ -56,7 +79,8 @@ reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks
     size_t count = blocks_count(b);
     b->least = malloc(count * sizeof *b->least);
     b->most = malloc(count * sizeof *b->most);
-    if (!b->least || !b->most) {
+    b->around = malloc(count * sizeof *b->around);
+    if (!b->least || !b->most || !b->around) {
         blocks_free(b);
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
     }
@@ -69,6 +93,7 @@ reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks
     b->top = b->most[0];
     for (i = 1; i < count; i++)
         b->top = b->most[i] > b->top ? b->most[i] : b->top;
+    fill_around(b);
     return REFERENCE_OK;
 }
 
@@ -76,6 +101,7 @@ void blocks_free(blocks *b)
 {
     free(b->least);
     free(b->most);
+    free(b->around);
     free(b->distance);
     free(b->known);
     *b = (blocks){0};

@@ -10,7 +10,7 @@
 #include "device.h"
 #include "kernel_fixed.h"
 
-enum { BAND = 4 * CPU_TILE_PX, MAX_THREADS = 256 };
+enum { BAND = CPU_TILE_PX, MAX_THREADS = 256 };
 
 typedef struct cpu_state {
     int32_t threads;
@@ -126,10 +126,10 @@ static reference_status need_cells(cpu_state *s, reference_stats *stats, vodr_er
 {
     if (s->cells)
         return REFERENCE_OK;
-    size_t bytes = cells_bytes(&s->volume);
-    s->cells = malloc(bytes);
+    s->cells = cells_alloc(&s->volume);
     if (!s->cells)
-        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu MiB of packed cells", (bytes >> 20) + 1);
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu MiB of packed cells",
+                              (cells_bytes(&s->volume) >> 20) + 1);
     cpu_job job = {.work = fill_layers, .input = &s->volume, .output = s->cells, .rows = s->volume.dims_vox[2] + 1};
     stats->preprocess_ms += run(s, &job);
     return REFERENCE_OK;

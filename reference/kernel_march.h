@@ -3,7 +3,11 @@
 #ifndef REFERENCE_KERNEL_MARCH_H
 #define REFERENCE_KERNEL_MARCH_H
 
-#include "kernel_skip.h"
+#include "kernel_hop.h"
+
+/* On the CPU cells are asked for this many samples ahead, and with blocks, one in so many samples tells mip first what
+ * the maximum is at least. */
+enum { AHEAD = 6, SEED = 32 };
 
 typedef struct packet_result {
     real rgba[4]; /* premultiplied */
@@ -57,6 +61,24 @@ KERNEL void march_over(const kernel_frame *f, const march_lane *lane, const look
         out->rgba[c] = out->rgba[c] + colour[c] * through;
 }
 
+/* Asks for what sample n will read; for gradients also for what lies around the tile of rays: places drawn apart from
+ * the middle by two thirds, a pixel's width for the outer ones of four. */
+KERNEL void march_ask(const kernel_frame *f, const packet *rays, const bundle *all, kernel_mode mode,
+                      reference_voxel type, int32_t n)
+{
+    real at = smaller(spread((REAL)n), to_real(rays->count - 1)), place[3];
+    for (int a = 0; a < 3; a++)
+        place[a] = rays->start[a] + at * rays->step[a];
+    fetch_ahead(&f->volume, type, place);
+    if (mode != KERNEL_LIT)
+        return;
+    for (int a = 0; a < 3; a++) {
+        real apart = place[a] - (all->middle[a] + (REAL)n * all->step[a]);
+        place[a] = clamp_real(place[a] + apart * (REAL)(2 / 3.0), 0, (REAL)f->volume.dims_vox[a]);
+    }
+    fetch_ahead(&f->volume, type, place);
+}
+
 /* Takes the samples n to n + batch - 1 of the live lanes; without `all`, only those before `end`. The volume is read
  * for all of them before the first is used, so that a card has several reads under way. With `ends`, opaque rays end.
  */
@@ -65,10 +87,10 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
                         progress *s, packet_result *out)
 {
     real p[MAX_BATCH][3], value[MAX_BATCH];
-    const real from = to_real(s->n), last = to_real(s->end - 1);
+    const real last = to_real(LANES > 1 ? rays->count - 1 : spread_whole(s->end - 1));
     for (int k = 0; k < batch; k++) {
-        real at = from + (REAL)k;
-        if (!all)
+        real at = spread((REAL)s->n + (REAL)k);
+        if (LANES > 1 || !all)
             at = pick(at > last, last, at);
         for (int a = 0; a < 3; a++)
             p[k][a] = rays->start[a] + at * rays->step[a];
@@ -88,19 +110,31 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
     }
 }
 
-/* Takes samples before `end`: on a card all of them, on the CPU, where lanes have ends of their own, the next. */
+/* Takes the samples before `end`. On the CPU rays end one by one. */
 KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
-                      kernel_mode mode, kernel_filter filter, reference_voxel type, progress *s, packet_result *out)
+                      kernel_mode mode, kernel_filter filter, reference_voxel type, const bundle *all, progress *s,
+                      packet_result *out)
 {
     const int batch = mode == KERNEL_LIT ? 1 : MAX_BATCH;
     if (LANES > 1) {
-        march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
-        s->live = s->live & (s->n + 1 < rays->count);
-        s->n = pick_whole(s->live, s->n + 1, s->n);
+        const bool asks = filter == KERNEL_CELLS;
+        if (asks) {
+            ROLLED
+            for (int32_t n = s->asked > s->n ? s->asked : s->n; n < s->n + AHEAD; n++)
+                march_ask(f, rays, all, mode, type, n);
+        }
+        while (s->n < s->end && any_lane(s->live)) {
+            if (asks)
+                march_ask(f, rays, all, mode, type, s->n + AHEAD);
+            march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
+            s->n++;
+            s->live = s->live & (s->n < rays->count);
+        }
+        s->asked = s->n + AHEAD;
         return;
     }
     if (mode == KERNEL_MIP || f->termination > 1)
-        for (; any_lane(s->n + batch <= s->end); s->n = s->n + batch)
+        for (; s->n + batch <= s->end; s->n = s->n + batch)
             march_batch(f, lane, entries, rays, mode, filter, type, batch, true, false, s, out);
     else
         for (; any_lane(s->live & (s->n + batch <= s->end)); s->n = s->n + batch)
@@ -111,6 +145,21 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
     s->live = s->live & (s->n < rays->count);
 }
 
+/* One in SEED samples of a mip. */
+KERNEL void march_seed(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
+                       kernel_filter filter, reference_voxel type, const bundle *all, progress *s, packet_result *out)
+{
+    ROLLED
+    for (int32_t n = 0; n < all->most; n += SEED)
+        march_ask(f, rays, all, KERNEL_MIP, type, n);
+    for (; s->n < all->most; s->n += SEED) {
+        s->live = s->n < rays->count;
+        march_batch(f, lane, entries, rays, KERNEL_MIP, filter, type, 1, true, true, s, out);
+    }
+    s->n = 0;
+    s->live = 0 < rays->count;
+}
+
 /* The whole ray. mode, filter, skip and type are constants where this is inlined; `entries` is the table, wherever the
  * device keeps it. */
 KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const packet *rays, kernel_mode mode,
@@ -118,15 +167,19 @@ KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const p
 {
     packet_result out = {{spread(0), spread(0), spread(0), spread(0)}, spread_whole(0)};
     const march_lane lane = march_prepare(f, rays);
+    const bundle all = bundle_of(rays, place_shift(filter));
+    const bool hops = LANES > 1 && filter == KERNEL_CELLS && skip != KERNEL_SKIP_NONE;
     const REAL lowest = (REAL)-1e30;
-    progress s = {spread_whole(0), rays->count, spread(lowest), 0 < rays->count};
-    if (skip != KERNEL_SKIP_NONE)
-        s.end = spread_whole(0);
+    progress s = {0, skip == KERNEL_SKIP_NONE ? all.most : 0, 0, spread(lowest), 0 < rays->count};
+    if (hops && mode == KERNEL_MIP)
+        march_seed(f, &lane, entries, rays, filter, type, &all, &s, &out);
     while (any_lane(s.live)) {
-        if (skip != KERNEL_SKIP_NONE)
+        if (hops)
+            march_hop(f, &all, rays, mode, &s);
+        else if (skip != KERNEL_SKIP_NONE)
             march_skip(f, &lane, rays, mode, filter, &s);
         if (any_lane(s.live))
-            march_run(f, &lane, entries, rays, mode, filter, type, &s, &out);
+            march_run(f, &lane, entries, rays, mode, filter, type, &all, &s, &out);
     }
     if (mode == KERNEL_MIP) {
         real colour[4];

@@ -10,12 +10,13 @@ typedef struct packet {
     whole count;
 } packet;
 
-/* Where rays are. */
+/* Where the rays of a packet are: all at the same of their samples, so that what they read lies together. */
 typedef struct progress {
-    whole n;       /* the next sample; of a lane that rests, any of its samples */
-    whole end;     /* the samples before this one are to be taken */
+    int32_t n;     /* the next sample */
+    int32_t end;   /* the samples before this one are to be taken, of each ray that has them */
+    int32_t asked; /* the CPU: what the samples before this one read is on its way */
     real greatest; /* mip: so far */
-    mask live;
+    mask live;     /* rays that have sample n and are not opaque */
 } progress;
 
 /* The block of a place in the volume, its number along each axis and in all. */
@@ -45,24 +46,22 @@ KERNEL whole samples_to_leave(const kernel_blocks *b, REAL shift, const march_la
     return truncate(larger(least, spread(1)));
 }
 
-/* Moves the live lanes that have taken all samples before `end` to the next block that shows something, and `end` to
- * where they may leave it. */
+/* Once all samples before `end` are taken: moves to the next at which a live ray is in a block that shows something,
+ * and `end` to where all such rays may have left theirs. */
 KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_mode mode,
                        kernel_filter filter, progress *s)
 {
     const kernel_blocks *b = &f->blocks;
     const REAL shift = place_shift(filter);
     const REAL above = filter == KERNEL_TEXTURE ? (REAL)(1 + 0x1p-16) : 1; /* a texture unit's own rounding */
-    mask asks = s->live & (s->n >= s->end);
-    if (mode == KERNEL_MIP) {
-        s->live = s->live & unless(asks & (s->greatest >= (REAL)b->top * above));
-        asks = asks & s->live;
-    }
-    while (any_lane(asks)) {
+    if (mode == KERNEL_MIP)
+        s->live = s->live & unless(s->greatest >= (REAL)b->top * above);
+    while (any_lane(s->live)) {
         real p[3];
         whole at[3], distance;
+        const real from = pick(s->live, spread((REAL)s->n), spread(0));
         for (int a = 0; a < 3; a++)
-            p[a] = rays->start[a] + to_real(s->n) * rays->step[a];
+            p[a] = rays->start[a] + from * rays->step[a];
         whole block = block_of(b, shift, p, at);
         if (mode == KERNEL_MIP)
             distance = pick_whole(fetch_float(b->most, block) * above <= s->greatest, spread_whole(1), spread_whole(0));
@@ -70,13 +69,14 @@ KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const pack
             distance = fetch_byte(b->distance, block);
         mask shows = distance == 0;
         whole next = s->n + samples_to_leave(b, shift, lane, p, at, pick_whole(shows, spread_whole(1), distance));
-        mask ends = next >= rays->count;
-        s->end = pick_whole(asks & shows, pick_whole(ends, rays->count, next), s->end);
-        asks = asks & unless(shows);
-        s->live = s->live & unless(asks & ends);
-        asks = asks & s->live;
-        s->n = pick_whole(asks, next, s->n);
+        shows = shows & s->live;
+        if (any_lane(shows)) {
+            next = pick_whole(next >= rays->count, rays->count, next);
+            s->end = most_of(pick_whole(shows, next, spread_whole(0)));
+            return;
+        }
+        s->n = least_of(pick_whole(s->live, next, spread_whole(INT32_MAX)));
+        s->live = s->live & (s->n < rays->count);
     }
 }
-
 #endif

@@ -41,6 +41,7 @@ typedef struct kernel_blocks {
     int32_t edge_vox, count[3];
     const uint8_t *distance; /* over */
     const float *most;       /* mip: the greatest stored value a sample in the block can have */
+    const float *around;     /* the CPU's mip: the same of a block and all blocks that touch it */
     float top;               /* of all blocks */
 } kernel_blocks;
 

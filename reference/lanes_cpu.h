@@ -5,6 +5,10 @@
 
 #include <string.h>
 
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 #include "kernel_types.h"
 
 #define WHOLE_OF_float int32_t
@@ -77,11 +81,44 @@ KERNEL real saturate(real x)
 
 KERNEL bool any_lane(mask m)
 {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0;
+#elif defined(__AVX2__)
+    __m256i half[2];
+    memcpy(half, &m, sizeof half);
+    half[0] = _mm256_or_si256(half[0], half[1]);
+    return !_mm256_testz_si256(half[0], half[0]);
+#else
     uint64_t word[8], all = 0;
     memcpy(word, &m, sizeof word);
     for (int i = 0; i < 8; i++)
         all |= word[i];
     return all != 0;
+#endif
+}
+
+/* The greatest and the least of all lanes. */
+KERNEL int32_t most_of(whole i)
+{
+    WHOLE_OF(REAL) lane[LANES], most = i[0];
+    memcpy(lane, &i, sizeof lane);
+    for (int l = 1; l < LANES; l++)
+        most = lane[l] > most ? lane[l] : most;
+    return (int32_t)most;
+}
+
+KERNEL int32_t least_of(whole i)
+{
+    return -most_of(-i);
+}
+
+KERNEL REAL most_real(real x)
+{
+    REAL lane[LANES], most = x[0];
+    memcpy(lane, &x, sizeof lane);
+    for (int l = 1; l < LANES; l++)
+        most = lane[l] > most ? lane[l] : most;
+    return most;
 }
 
 KERNEL mask unless(mask m)
@@ -141,6 +178,11 @@ typedef struct lookup {
 #else
 
 /* Packed cells are of use where speed is. */
+KERNEL void fetch_ahead(const kernel_volume *v, reference_voxel type, const real place[3])
+{
+    (void)v, (void)type, (void)place;
+}
+
 KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
 {
     (void)v, (void)type;

@@ -57,19 +57,36 @@ KERNEL real mix_words(whole low, whole high, int shift, int32_t mask_of_voxel, r
     return a + (b - a) * share;
 }
 
+/* The number of a place's cell, and the place's shares of it. */
+KERNEL whole cell_of(const kernel_volume *v, const real place[3], real share[3])
+{
+    whole cell[3];
+    for (int a = 0; a < 3; a++) {
+        cell[a] = truncate(place[a]);
+        share[a] = place[a] - to_real(cell[a]);
+    }
+    return (cell[2] * (v->dims_vox[1] + 1) + cell[1]) * (v->dims_vox[0] + 2) + cell[0];
+}
+
+/* Asks for the cells of places that will be sampled soon. */
+KERNEL void fetch_ahead(const kernel_volume *v, reference_voxel type, const real place[3])
+{
+    real share[3];
+    int32_t index[LANES];
+    whole cell = cell_of(v, place, share);
+    memcpy(index, &cell, sizeof index);
+    for (int l = 0; l < LANES; l++)
+        __builtin_prefetch((const char *)v->cells + (type == REFERENCE_UINT8 ? 4 : 8) * (size_t)index[l]);
+}
+
 /* What lies on the four edges of a place's cell that run along x, y fastest, and the place's shares of the cell. An
  * entry of v->cells is the four voxels around a cell at one end of it in x, y fastest; the entry behind it is at the
  * other. */
 KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
 {
-    whole cell[3], word[4];
+    whole cell = cell_of(v, place, share), word[4];
     int32_t index[LANES];
-    for (int a = 0; a < 3; a++) {
-        cell[a] = truncate(place[a]);
-        share[a] = place[a] - to_real(cell[a]);
-    }
-    cell[0] = (cell[2] * (v->dims_vox[1] + 1) + cell[1]) * (v->dims_vox[0] + 2) + cell[0];
-    memcpy(index, &cell[0], sizeof index);
+    memcpy(index, &cell, sizeof index);
     if (type == REFERENCE_UINT8) {
         load_pairs(v->cells, 4, index, word);
         for (int i = 0; i < 4; i++)

@@ -71,6 +71,22 @@ KERNEL bool any_lane(mask m)
     return m;
 }
 
+/* The greatest and the least of all lanes. */
+KERNEL int32_t most_of(whole i)
+{
+    return i;
+}
+
+KERNEL int32_t least_of(whole i)
+{
+    return i;
+}
+
+KERNEL REAL most_real(real x)
+{
+    return x;
+}
+
 KERNEL mask unless(mask m)
 {
     return !m;
@@ -148,6 +164,11 @@ KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real
         edge[2] = mix_raised<16>(cell.z, 0, share[0]);
         edge[3] = mix_raised<16>(cell.w, 0, share[0]);
     }
+}
+
+/* A card hides what reads take by other warps. */
+KERNEL void fetch_ahead(const kernel_volume *v, reference_voxel type, const real place[3])
+{
 }
 
 /* A table on the card. In shared memory an entry is followed by its difference from the next; then there are several

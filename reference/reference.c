@@ -347,6 +347,7 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
         m.frame.blocks = (kernel_blocks){.edge_vox = r->blocks.edge_vox,
                                          .distance = r->blocks.distance,
                                          .most = r->blocks.most,
+                                         .around = r->blocks.around,
                                          .top = r->blocks.top};
         memcpy(m.frame.blocks.count, r->blocks.count, sizeof r->blocks.count);
     }
