@@ -45,7 +45,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model contact-sheet fuzz lint format docs clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-model bench-reference contact-sheet fuzz lint format docs clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -82,6 +82,11 @@ contact-sheet: $(BUILD)/vodr ## draw every real volume at hand into build/contac
 bench-model: $(BUILD)/vodr ## measure the model beside a software rasterizer, and write its table in the README again
 	@scripts/tables $(BUILD) model
 	@cat $(BUILD)/tables/model
+
+bench-reference: ## measure the reference renderer on the CPU beside VTK, and write docs/table-reference.md again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/reference_frames
+	@scripts/tables $(BUILD) reference
+	@cat $(BUILD)/tables/reference
 
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
@@ -165,6 +170,9 @@ $(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libvodr.a
 
 $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
 $(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
 	$(NVCC) -o $@ $^
