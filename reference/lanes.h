@@ -22,6 +22,15 @@
 #define ROLLED _Pragma("GCC unroll 1")
 #endif
 
+/* Before a loop of few turns that is to be unrolled. */
+#ifdef __clang__
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#elif defined(__CUDACC__)
+#define UNROLLED _Pragma("unroll")
+#else
+#define UNROLLED _Pragma("GCC unroll 8")
+#endif
+
 #ifdef REAL
 #ifdef __CUDACC__
 #include "lanes_cuda.h"
