@@ -54,6 +54,8 @@ KERNEL real sample_linear(const kernel_volume *v, reference_voxel type, const re
     const int32_t stride[3] = {1, v->dims_vox[0], v->dims_vox[0] * v->dims_vox[1]};
     whole offset[3][2];
     real share[3], value[8];
+    if (!coarse && fetch_pairs(v, type, place, share, value))
+        return mix_around(value, 1, share);
     for (int a = 0; a < 3; a++) {
         sample_axis(place[a], v->dims_vox[a], stride[a], offset[a], &share[a]);
         if (coarse)
