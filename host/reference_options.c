@@ -111,9 +111,9 @@ static const option rows[] = {
      "byte; texture has weights of 8 bits, as a card's texture\n"
      "unit"},
     {"accel", 0, "ACCEL", false, set_accel,
-     "none, block, best, and of mip bisect, seed (best)\n"
+     "none, block, bisect, seed, best (best)\n"
      "how what does not show is passed over; the picture is\n"
-     "the same"},
+     "the same; bisect and seed are of mip"},
     {"step", 0, "VOXELS", false, set_step, "raycast: finest voxels between samples, 0.01 to 1000 (1)"},
     {"block", 0, "N", false, set_block, "edge of the blocks of --accel in voxels, 2 to 32768 (8)"},
     {"shading", 0, "SHADING", false, set_shading, "none or phong; phong is light from the eye (none)"},
