@@ -43,6 +43,9 @@ BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
             host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
+# The same of bench/mip_frames.
+MIP      := bench/record/mip_frames bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
+            tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
 SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 
@@ -232,6 +235,9 @@ $(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $
 $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
+$(BUILD)/bench/mip_frames: $(MIP:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
 $(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
@@ -250,7 +256,7 @@ $(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BU
 $(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
-$(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib
+$(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib -Ibench/lib
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)

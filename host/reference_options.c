@@ -13,7 +13,8 @@ static const char *const numbers[] = {[REFERENCE_FLOAT] = "float",
                                       [FIXED] = "fixed",
                                       NULL};
 static const char *const accels[] = {
-    [REFERENCE_ACCEL_NONE] = "none", [REFERENCE_ACCEL_BLOCK] = "block", [REFERENCE_ACCEL_BEST] = "best", NULL};
+    [REFERENCE_ACCEL_NONE] = "none", [REFERENCE_ACCEL_BLOCK] = "block", [REFERENCE_ACCEL_BISECT] = "bisect",
+    [REFERENCE_ACCEL_SEED] = "seed", [REFERENCE_ACCEL_BEST] = "best",   NULL};
 static const char *const shadings[] = {[REFERENCE_UNLIT] = "none", [REFERENCE_PHONG] = "phong", NULL};
 
 static host_status set_device(void *target, const option *o, const char *value, host_error *error)
@@ -50,7 +51,7 @@ static host_status set_accel(void *target, const option *o, const char *value, h
 {
     int i;
     reference_wish *w = target;
-    host_status status = option_word(o, value, accels, "none, block or best", &i, error);
+    host_status status = option_word(o, value, accels, "none, block, bisect, seed or best", &i, error);
     if (status != HOST_OK)
         return status;
     w->choice.accel = (reference_accel)i;
@@ -83,8 +84,8 @@ static host_status set_block(void *target, const option *o, const char *value, h
 {
     reference_wish *w = target;
     int64_t edge_vox;
-    if (!text_integer(value, 2, 64, &edge_vox))
-        return option_refuse(o, value, "an integer from 2 to 64", error);
+    if (!text_integer(value, 2, VODR_MAX_DIM_VOX, &edge_vox))
+        return option_refuse(o, value, "an integer from 2 to 32768", error);
     w->has_block = true;
     w->choice.block_vox = (int32_t)edge_vox;
     return HOST_OK;
@@ -110,10 +111,11 @@ static const option rows[] = {
      "byte; texture has weights of 8 bits, as a card's texture\n"
      "unit"},
     {"accel", 0, "ACCEL", false, set_accel,
-     "none, block, best (best)\n"
-     "how empty space is passed over; the picture is the same"},
+     "none, block, bisect, seed, best (best)\n"
+     "how what does not show is passed over; the picture is\n"
+     "the same; bisect and seed are of mip"},
     {"step", 0, "VOXELS", false, set_step, "raycast: finest voxels between samples, 0.01 to 1000 (1)"},
-    {"block", 0, "N", false, set_block, "edge of the blocks of --accel in voxels, 2 to 64 (8)"},
+    {"block", 0, "N", false, set_block, "edge of the blocks of --accel in voxels, 2 to 32768 (8)"},
     {"shading", 0, "SHADING", false, set_shading, "none or phong; phong is light from the eye (none)"},
     {"termination", 0, "OPACITY", false, set_termination,
      "a ray ends at this opacity, 0.01 to 1; 1: never (raycast\n"
@@ -156,6 +158,9 @@ static host_status refuse_view(const reference_wish *w, const view_options *v, h
     if (status == HOST_OK && machine.blend == VODR_BLEND_MIP && w->choice.shading == REFERENCE_PHONG)
         return host_fail(error, HOST_BAD_INPUT,
                          "--shading phong does not go with blend=mip: it goes with over and under");
+    if (status == HOST_OK && machine.blend != VODR_BLEND_MIP && !reference_accel_suits(w->choice.accel, REFERENCE_OVER))
+        return host_fail(error, HOST_BAD_INPUT, "--accel %s goes with blend=mip: over and under have none, block, best",
+                         accels[w->choice.accel]);
     return status;
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bounds.h"
 #include "device.h"
 
 enum { FARTHEST = 255 };
@@ -18,22 +19,13 @@ static float stored_value(const reference_volume *v, size_t i)
     }
 }
 
-/* The voxels that samples in cells [edge*i, edge*i + edge) of an axis lie between. */
-static void voxel_range(int32_t i, int32_t edge, int32_t size, int32_t *lo, int32_t *hi)
-{
-    *lo = i * edge - 1 < 0 ? 0 : i * edge - 1;
-    *hi = i * edge + edge > size ? size : i * edge + edge;
-    if (*lo >= size)
-        *lo = size - 1;
-}
-
 /* The range of the voxels of one block. Interpolation rounds: floats get a margin. */
 static void block_range(const reference_volume *v, int32_t edge, const int32_t at[3], float *least, float *most)
 {
     int32_t lo[3], hi[3];
     float min = INFINITY, max = -INFINITY;
     for (int a = 0; a < 3; a++)
-        voxel_range(at[a], edge, v->dims_vox[a], &lo[a], &hi[a]);
+        bounds_voxels(at[a], edge, v->dims_vox[a], &lo[a], &hi[a]);
     for (int32_t z = lo[2]; z < hi[2]; z++)
         for (int32_t y = lo[1]; y < hi[1]; y++) {
             size_t row = ((size_t)z * (size_t)v->dims_vox[1] + (size_t)y) * (size_t)v->dims_vox[0];
@@ -48,39 +40,15 @@ static void block_range(const reference_volume *v, int32_t edge, const int32_t a
     *most = max + margin;
 }
 
-/* Replaces each of `count` values, `stride` apart, by the greatest of itself and its neighbours. */
-static void widen(float *value, int32_t count, size_t stride)
-{
-    float before = value[0];
-    for (int32_t i = 0; i < count; i++) {
-        float own = value[(size_t)i * stride], after = i + 1 < count ? value[(size_t)(i + 1) * stride] : own;
-        value[(size_t)i * stride] = fmaxf(own, fmaxf(before, after));
-        before = own;
-    }
-}
-
-static void fill_around(blocks *b)
-{
-    const size_t stride[3] = {1, (size_t)b->count[0], (size_t)b->count[0] * (size_t)b->count[1]};
-    memcpy(b->around, b->most, blocks_count(b) * sizeof *b->around);
-    for (int a = 0; a < 3; a++) {
-        const int u = (a + 1) % 3, v = (a + 2) % 3;
-        for (int32_t j = 0; j < b->count[v]; j++)
-            for (int32_t i = 0; i < b->count[u]; i++)
-                widen(b->around + (size_t)j * stride[v] + (size_t)i * stride[u], b->count[a], stride[a]);
-    }
-}
-
 reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error)
 {
     *b = (blocks){.edge_vox = edge_vox};
     for (int a = 0; a < 3; a++)
-        b->count[a] = v->dims_vox[a] / edge_vox + 1; /* dims + 1 cells */
+        b->count[a] = bounds_count(v->dims_vox[a], edge_vox);
     size_t count = blocks_count(b);
     b->least = malloc(count * sizeof *b->least);
     b->most = malloc(count * sizeof *b->most);
-    b->around = malloc(count * sizeof *b->around);
-    if (!b->least || !b->most || !b->around) {
+    if (!b->least || !b->most) {
         blocks_free(b);
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
     }
@@ -90,10 +58,6 @@ reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks
         for (at[1] = 0; at[1] < b->count[1]; at[1]++)
             for (at[0] = 0; at[0] < b->count[0]; at[0]++, i++)
                 block_range(v, edge_vox, at, &b->least[i], &b->most[i]);
-    b->top = b->most[0];
-    for (i = 1; i < count; i++)
-        b->top = b->most[i] > b->top ? b->most[i] : b->top;
-    fill_around(b);
     return REFERENCE_OK;
 }
 
@@ -101,7 +65,6 @@ void blocks_free(blocks *b)
 {
     free(b->least);
     free(b->most);
-    free(b->around);
     free(b->distance);
     free(b->known);
     *b = (blocks){0};

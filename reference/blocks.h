@@ -8,8 +8,6 @@
 typedef struct blocks {
     int32_t edge_vox, count[3];
     float *least, *most; /* owned; NULL: not made */
-    float *around;       /* owned; greatest of `most` of a block and those that touch it */
-    float top;           /* greatest of `most` */
     uint8_t *distance;   /* owned; of blocks_classify() */
     double *known;       /* owned; what distance was made from */
     size_t known_count;

@@ -1,13 +1,8 @@
 /* cells.c - packs a volume's voxels so that a cell is read with one load: entry (i, j, k) holds the voxels (i-1; j-1,
  * j; k-1, k), clamped to the volume, y fastest; cell (i, j, k) is the entries i and i+1. */
-#define _DEFAULT_SOURCE /* madvise() */
 #include "cells.h"
 
-#include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-
-enum { HUGE_PAGE_BYTES = 1 << 21 };
 
 static int32_t clamped(int32_t i, int32_t size)
 {
@@ -32,18 +27,6 @@ bool cells_suit(const reference_volume *v)
 size_t cells_bytes(const reference_volume *v)
 {
     return (size_t)entries(v) * entry_bytes(v);
-}
-
-void *cells_alloc(const reference_volume *v)
-{
-    void *cells;
-    size_t bytes = cells_bytes(v);
-    if (posix_memalign(&cells, HUGE_PAGE_BYTES, bytes) != 0)
-        return NULL;
-#ifdef MADV_HUGEPAGE
-    madvise(cells, bytes, MADV_HUGEPAGE); /* advice: nothing is lost where it is not taken */
-#endif
-    return cells;
 }
 
 /* The four rows of voxels that a row of entries is made of. */

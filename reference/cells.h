@@ -11,11 +11,7 @@
 bool cells_suit(const reference_volume *v);
 size_t cells_bytes(const reference_volume *v);
 
-/* Memory for all layers, to be freed, in pages as large as there are: rays change pages at almost every sample. NULL
- * where there is none. */
-void *cells_alloc(const reference_volume *v);
-
-/* Fills the layers [z0, z1) of dims_vox[2] + 1. */
+/* Fills the layers [z0, z1) of dims_vox[2] + 1, in memory of cells_bytes() for all of them. */
 void cells_fill(const reference_volume *v, int32_t z0, int32_t z1, void *cells);
 
 #endif

@@ -5,5 +5,5 @@
 #define LANES_OF_FLOAT
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_avx2, avx2, true, KERNEL_CELLS);
+DEFINE_MARCH(cpu_kernels_avx2, avx2, true, KERNEL_CELLS, KERNEL_LINEAR);
 #endif

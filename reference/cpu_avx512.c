@@ -6,5 +6,5 @@
 #define LANES_OF_FLOAT
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_avx512, avx512, true, KERNEL_CELLS);
+DEFINE_MARCH(cpu_kernels_avx512, avx512, true, KERNEL_CELLS, KERNEL_LINEAR);
 #endif

@@ -2,4 +2,4 @@
 #define REAL double
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_double, portable, false, NOT_CELLS);
+DEFINE_MARCH(cpu_kernels_double, portable, false, NOT_CELLS, NOT_CELLS);

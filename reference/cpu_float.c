@@ -3,7 +3,7 @@
 #define LANES_OF_FLOAT
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_float, portable, false, NOT_CELLS);
+DEFINE_MARCH(cpu_kernels_float, portable, false, NOT_CELLS, NOT_CELLS);
 
 const cpu_kernels *cpu_kernels_best(vodr_simd simd)
 {

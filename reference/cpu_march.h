@@ -12,7 +12,8 @@ enum { CPU_TILE_PX = 4 };
 
 typedef struct cpu_kernels {
     const char *name;
-    bool cells; /* KERNEL_CELLS and nothing else; or each other filter, KERNEL_LINEAR to the same bytes */
+    bool cells; /* KERNEL_CELLS and nothing else, but in KERNEL_SEARCH KERNEL_LINEAR; or each other filter,
+                   KERNEL_LINEAR to the same bytes */
     cpu_march_rows *march[KERNEL_MODES];
 } cpu_kernels;
 

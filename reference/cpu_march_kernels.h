@@ -2,7 +2,7 @@
  * once by a file for each REAL and instruction set; the variants are constants that the compiler folds into each copy
  * of one loop. */
 #include "cpu_march.h"
-#include "kernel_march.h"
+#include "kernel_cast.h"
 #include "kernel_ray.h"
 
 enum { TILE_W = CPU_TILE_PX, TILE_H = LANES / CPU_TILE_PX };
@@ -13,7 +13,7 @@ KERNEL packet tile_rays(const kernel_frame *f, kernel_filter filter, int32_t x, 
     packet rays;
     for (int l = 0; l < LANES; l++) {
         int32_t px = x + l % TILE_W, py = y + l / TILE_W;
-        kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0};
+        kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0};
         if (px < f->camera.width_px && py < y1)
             ray = ray_make(f, px, py);
         for (int a = 0; a < 3; a++) {
@@ -21,6 +21,7 @@ KERNEL packet tile_rays(const kernel_frame *f, kernel_filter filter, int32_t x, 
             rays.step[a][l] = (REAL)ray.step[a];
         }
         rays.count[l] = ray.count;
+        rays.first[l] = ray.first;
     }
     return rays;
 }
@@ -46,7 +47,7 @@ KERNEL void march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rg
     for (int32_t y = y0; y < y1; y += TILE_H)
         for (int32_t x = 0; x < f->camera.width_px; x += TILE_W) {
             packet rays = tile_rays(f, filter, x, y, y1);
-            packet_result result = march(f, &entries, &rays, mode, filter, f->skip, f->volume.type);
+            packet_result result = cast(f, &entries, &rays, mode, filter, f->skip, f->volume.type);
             tile_store(f, x, y, y1, &result, rgba, samples);
         }
 }
@@ -57,11 +58,14 @@ KERNEL void march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rg
         march_rows(f, y0, y1, rgba, samples, mode, filter);                                                            \
     }
 
-/* The kernels of an instruction set, and the table of them. */
-#define DEFINE_MARCH(table, set, cells, filter)                                                                        \
+/* The kernels of an instruction set, and the table of them. A search reads too little for cells to be packed. */
+#define DEFINE_MARCH(table, set, cells, filter, scattered)                                                             \
     DEFINE_ONE(set, filter, KERNEL_OVER)                                                                               \
     DEFINE_ONE(set, filter, KERNEL_LIT)                                                                                \
     DEFINE_ONE(set, filter, KERNEL_MIP)                                                                                \
-    const cpu_kernels table = {#set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP}}
+    DEFINE_ONE(set, filter, KERNEL_LEAP)                                                                               \
+    DEFINE_ONE(set, scattered, KERNEL_SEARCH)                                                                          \
+    const cpu_kernels table = {                                                                                        \
+        #set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP, set##_KERNEL_LEAP, set##_KERNEL_SEARCH}}
 
 #define NOT_CELLS f->filter == KERNEL_CELLS ? KERNEL_LINEAR : f->filter

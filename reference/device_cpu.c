@@ -5,10 +5,12 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "bounds.h"
 #include "cells.h"
 #include "cpu_march.h"
 #include "device.h"
 #include "kernel_fixed.h"
+#include "pages.h"
 
 enum { BAND = CPU_TILE_PX, MAX_THREADS = 256 };
 
@@ -17,15 +19,21 @@ typedef struct cpu_state {
     vodr_simd simd;
     reference_volume volume;
     void *cells; /* owned; NULL until a frame needs them */
+    bounds_code code;
+    bool has_code;
+    kernel_bounds bounds;  /* codes owned; NULL until a search needs them */
+    uint16_t *block_codes; /* owned; of the last edge asked for */
+    int32_t block_edge_vox;
 } cpu_state;
 
 /* Work in rows: `work` is called for bands of them until none is left. */
 typedef struct cpu_job cpu_job;
 struct cpu_job {
     void (*work)(const cpu_job *job, int32_t begin, int32_t end, uint64_t *samples);
-    const void *input; /* what the work is on: a kernel_fixed, a kernel_frame or a reference_volume */
+    const void *input; /* what the work is on: a kernel_fixed, a kernel_frame, a reference_volume or a cpu_state */
     void *output;
     cpu_march_rows *march_rows;
+    int32_t grid; /* edge of a block, or number of a grid */
     int32_t rows;
     pthread_mutex_t lock; /* over what follows */
     int32_t next;
@@ -60,6 +68,34 @@ static void fill_layers(const cpu_job *job, int32_t z0, int32_t z1, uint64_t *sa
 {
     (void)samples;
     cells_fill(job->input, z0, z1, job->output);
+}
+
+static void fill_blocks(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *samples)
+{
+    const cpu_state *s = job->input;
+    (void)samples;
+    bounds_fill(&s->volume, &s->code, job->grid, l0, l1, job->output);
+}
+
+static void halve_grid(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *samples)
+{
+    const cpu_state *s = job->input;
+    (void)samples;
+    bounds_halve(&s->bounds, job->grid, l0, l1, job->output);
+}
+
+static void widen_layers(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *samples)
+{
+    const cpu_state *s = job->input;
+    (void)samples;
+    bounds_widen_layers(&s->bounds, job->grid, l0, l1, job->output);
+}
+
+static void widen_rows(const cpu_job *job, int32_t j0, int32_t j1, uint64_t *samples)
+{
+    const cpu_state *s = job->input;
+    (void)samples;
+    bounds_widen_rows(&s->bounds, job->grid, j0, j1, job->output);
 }
 
 static void *thread_main(void *context)
@@ -102,10 +138,11 @@ static reference_status cpu_open(const reference_options *options, const referen
     cpu_state *s = malloc(sizeof *s);
     if (!s)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the reference renderer");
-    *s = (cpu_state){(int32_t)(threads < 1             ? 1
-                               : threads > MAX_THREADS ? MAX_THREADS
-                                                       : threads),
-                     options->simd, *volume, NULL};
+    *s = (cpu_state){.threads = (int32_t)(threads < 1             ? 1
+                                          : threads > MAX_THREADS ? MAX_THREADS
+                                                                  : threads),
+                     .simd = options->simd,
+                     .volume = *volume};
     snprintf(name, DEVICE_NAME_CHARS, "CPU, %d thread%s, %s", s->threads, s->threads > 1 ? "s" : "",
              cpu_kernels_best(s->simd)->name);
     *state = s;
@@ -126,13 +163,88 @@ static reference_status need_cells(cpu_state *s, reference_stats *stats, vodr_er
 {
     if (s->cells)
         return REFERENCE_OK;
-    s->cells = cells_alloc(&s->volume);
+    s->cells = pages_alloc(cells_bytes(&s->volume));
     if (!s->cells)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu MiB of packed cells",
                               (cells_bytes(&s->volume) >> 20) + 1);
     cpu_job job = {.work = fill_layers, .input = &s->volume, .output = s->cells, .rows = s->volume.dims_vox[2] + 1};
     stats->preprocess_ms += run(s, &job);
     return REFERENCE_OK;
+}
+
+/* ---- bounds ---- */
+
+static void need_code(cpu_state *s)
+{
+    if (!s->has_code)
+        s->code = bounds_code_of(&s->volume);
+    s->has_code = true;
+}
+
+/* The codes of blocks for KERNEL_LEAP. */
+static reference_status need_blocks(cpu_state *s, kernel_frame *f, vodr_error *error)
+{
+    const int32_t edge = f->blocks.edge_vox, *count = f->blocks.count;
+    if (s->block_edge_vox != edge) {
+        size_t codes = (size_t)count[0] * (size_t)count[1] * (size_t)count[2];
+        free(s->block_codes);
+        s->block_edge_vox = 0;
+        s->block_codes = pages_alloc(codes * sizeof *s->block_codes);
+        if (!s->block_codes)
+            return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the maxima of %zu blocks", codes);
+        cpu_job job = {.work = fill_blocks, .input = s, .output = s->block_codes, .rows = count[2], .grid = edge};
+        run(s, &job);
+        s->block_edge_vox = edge;
+    }
+    f->blocks.most = s->block_codes;
+    return REFERENCE_OK;
+}
+
+static void run_grid(cpu_state *s, void (*work)(const cpu_job *, int32_t, int32_t, uint64_t *), int32_t grid,
+                     int32_t rows, uint16_t *codes)
+{
+    cpu_job job = {.work = work, .input = s, .output = codes, .rows = rows, .grid = grid};
+    run(s, &job);
+}
+
+/* The grids of KERNEL_SEARCH. A grid is widened once the next is made of its blocks. */
+static reference_status need_grids(cpu_state *s, kernel_frame *f, vodr_error *error)
+{
+    kernel_bounds *b = &s->bounds;
+    if (!b->codes) {
+        size_t count = bounds_shape(s->volume.dims_vox, b);
+        uint16_t *codes = pages_alloc(count * sizeof *codes);
+        if (!codes)
+            return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the maxima of %zu cells", count);
+        run_grid(s, fill_blocks, 1, b->count[0][2], codes);
+        for (int32_t k = 1; k <= b->levels; k++) {
+            if (k < b->levels)
+                run_grid(s, halve_grid, k, b->count[k][2], codes);
+            if (k == 1)
+                continue;
+            run_grid(s, widen_layers, k - 1, b->count[k - 1][2], codes);
+            run_grid(s, widen_rows, k - 1, b->count[k - 1][1], codes);
+        }
+        b->codes = codes;
+    }
+    f->bounds = *b;
+    return REFERENCE_OK;
+}
+
+/* What a maximum's ways past its blocks need. */
+static reference_status need_bounds(cpu_state *s, kernel_mode mode, kernel_frame *f, reference_stats *stats,
+                                    vodr_error *error)
+{
+    if (mode != KERNEL_LEAP && mode != KERNEL_SEARCH)
+        return REFERENCE_OK;
+    const bool known = mode == KERNEL_SEARCH ? s->bounds.codes != NULL : s->block_edge_vox == f->blocks.edge_vox;
+    const double begin_ms = now_ms();
+    need_code(s);
+    reference_status status = mode == KERNEL_LEAP ? need_blocks(s, f, error) : need_grids(s, f, error);
+    bounds_decode(&s->code, f->filter, &f->bounds);
+    if (!known)
+        stats->preprocess_ms += now_ms() - begin_ms;
+    return status;
 }
 
 static reference_status cpu_march(void *state, const device_march *m, double *rgba, reference_stats *stats,
@@ -143,13 +255,14 @@ static reference_status cpu_march(void *state, const device_march *m, double *rg
     kernel_frame f = m->frame;
     if (m->numbers == REFERENCE_FLOAT && f.filter == KERNEL_LINEAR && cells_suit(&s->volume))
         k = cpu_kernels_best(s->simd);
-    if (k->cells) {
-        reference_status status = need_cells(s, stats, error);
-        if (status != REFERENCE_OK)
-            return status;
+    reference_status status = need_bounds(s, m->mode, &f, stats, error);
+    if (status == REFERENCE_OK && k->cells && m->mode != KERNEL_SEARCH) {
+        status = need_cells(s, stats, error);
         f.filter = KERNEL_CELLS;
         f.volume.cells = s->cells;
     }
+    if (status != REFERENCE_OK)
+        return status;
     cpu_job job = {
         .work = march_rows, .input = &f, .output = rgba, .march_rows = k->march[m->mode], .rows = f.camera.height_px};
     stats->draw_ms = run(s, &job);
@@ -161,6 +274,8 @@ static void cpu_close(void *state)
 {
     cpu_state *s = state;
     free(s->cells);
+    free((void *)s->bounds.codes);
+    free(s->block_codes);
     free(s);
 }
 

@@ -5,12 +5,14 @@
 #include <string.h>
 
 #define REAL float
+#include "bounds_cuda.h"
 #include "device.h"
+#include "kernel_cast.h"
 #include "kernel_fixed.h"
-#include "kernel_march.h"
 #include "kernel_ray.h"
+#include "launch_cuda.h"
 
-enum { BLOCK_W = 16, BLOCK_H = 8, COPIES_BYTES = 34 << 10 };
+enum { BLOCK_W = 16, BLOCK_H = 8 };
 
 typedef struct cuda_state {
     reference_volume volume; /* voxels in the host's memory */
@@ -18,6 +20,11 @@ typedef struct cuda_state {
     void *cells;             /* the same packed (lanes_cuda.h) */
     cudaArray_t array;       /* the same for the texture unit */
     cudaTextureObject_t texture;
+    bounds_code code;
+    bool has_code;
+    kernel_bounds bounds;  /* codes on the card; NULL until a search needs them */
+    uint16_t *block_codes; /* on the card; of the last edge asked for */
+    int32_t block_edge_vox;
     cudaEvent_t begin, end;
 } cuda_state;
 
@@ -71,6 +78,8 @@ static void cuda_close(void *state)
     cudaFreeArray(s->array);
     cudaFree(s->linear);
     cudaFree(s->cells);
+    cudaFree((void *)s->bounds.codes);
+    cudaFree(s->block_codes);
     if (s->begin)
         cudaEventDestroy(s->begin);
     if (s->end)
@@ -296,14 +305,107 @@ static reference_status want_cells(cuda_state *s, reference_stats *stats, vodr_e
     return REFERENCE_OK;
 }
 
-/* How a frame's pixels are dealt out. A block of threads is two warps wide, four high. */
-typedef struct march_launch {
-    int32_t warp_log2;   /* of pixels that a warp is wide */
-    int32_t copies_log2; /* of copies of a table's entry in shared memory: neighbours then read side by side */
-} march_launch;
+/* ---- bounds ---- */
+
+static void start_blocks(const cuda_state *s, int32_t edge_vox, uint16_t *const spare[2], uint16_t *codes)
+{
+    const reference_volume *v = &s->volume;
+    switch (v->type) {
+    case REFERENCE_UINT8:
+        return bounds_start_blocks((const uint8_t *)s->linear, s->code, v->dims_vox, edge_vox, spare, codes);
+    case REFERENCE_UINT16:
+        return bounds_start_blocks((const uint16_t *)s->linear, s->code, v->dims_vox, edge_vox, spare, codes);
+    default: return bounds_start_blocks((const float *)s->linear, s->code, v->dims_vox, edge_vox, spare, codes);
+    }
+}
+
+static void start_grids(const cuda_state *s, uint16_t *const spare[3], uint16_t *codes)
+{
+    const reference_volume *v = &s->volume;
+    switch (v->type) {
+    case REFERENCE_UINT8:
+        return bounds_start_grids((const uint8_t *)s->linear, s->code, v->dims_vox, &s->bounds, spare, codes);
+    case REFERENCE_UINT16:
+        return bounds_start_grids((const uint16_t *)s->linear, s->code, v->dims_vox, &s->bounds, spare, codes);
+    default: return bounds_start_grids((const float *)s->linear, s->code, v->dims_vox, &s->bounds, spare, codes);
+    }
+}
+
+/* Fills codes[], which is new, with blocks of edge_vox cells, or with the grids of a search where that is 0. */
+static reference_status make_codes(cuda_state *s, frame_memory *m, int32_t edge_vox, size_t count, uint16_t **codes,
+                                   reference_stats *stats, vodr_error *error)
+{
+    const int32_t *dims = s->volume.dims_vox;
+    uint16_t *spare[3];
+    float ms;
+    const size_t cut = edge_vox ? (size_t)dims[0] * dims[1] * bounds_count(dims[2], edge_vox) : (size_t)s->bounds.count[1][0] * s->bounds.count[1][1] * s->bounds.count[1][2];
+    TRY_STATUS(need_linear(s, error));
+    TRY_STATUS(check_room((count + (edge_vox ? 2 : 3) * cut) * sizeof **codes, "the volume's maxima", error));
+    for (int i = 0; i < (edge_vox ? 2 : 3); i++) {
+        void *piece;
+        TRY_STATUS(take(m, cut * sizeof **codes, NULL, &piece, error));
+        spare[i] = (uint16_t *)piece;
+    }
+    TRY(cudaMalloc(codes, count * sizeof **codes));
+    TRY(cudaEventRecord(s->begin));
+    if (edge_vox)
+        start_blocks(s, edge_vox, spare, *codes);
+    else
+        start_grids(s, spare, *codes);
+    TRY(cudaGetLastError());
+    TRY(cudaEventRecord(s->end));
+    TRY(cudaEventSynchronize(s->end));
+    TRY(cudaEventElapsedTime(&ms, s->begin, s->end));
+    stats->preprocess_ms += ms;
+    return REFERENCE_OK;
+}
+
+static reference_status need_codes(cuda_state *s, kernel_mode mode, const kernel_blocks *b, reference_stats *stats,
+                                   vodr_error *error)
+{
+    frame_memory spare = {};
+    reference_status status = REFERENCE_OK;
+    uint16_t *codes = NULL;
+    if (mode == KERNEL_SEARCH && !s->bounds.codes) {
+        size_t count = bounds_shape(s->volume.dims_vox, &s->bounds);
+        status = make_codes(s, &spare, 0, count, &codes, stats, error);
+        s->bounds.codes = codes;
+    } else if (mode == KERNEL_LEAP && s->block_edge_vox != b->edge_vox) {
+        cudaFree(s->block_codes);
+        s->block_edge_vox = 0;
+        size_t count = (size_t)b->count[0] * (size_t)b->count[1] * (size_t)b->count[2];
+        status = make_codes(s, &spare, b->edge_vox, count, &s->block_codes, stats, error);
+        s->block_edge_vox = status == REFERENCE_OK ? b->edge_vox : 0;
+    }
+    release(&spare);
+    return status;
+}
+
+/* What a maximum's ways past its blocks need. */
+static reference_status take_bounds(cuda_state *s, kernel_mode mode, kernel_frame *f, reference_stats *stats,
+                                    vodr_error *error)
+{
+    if (mode != KERNEL_LEAP && mode != KERNEL_SEARCH)
+        return REFERENCE_OK;
+    if (!s->has_code)
+        s->code = bounds_code_of(&s->volume);
+    s->has_code = true;
+    TRY_STATUS(need_codes(s, mode, &f->blocks, stats, error));
+    f->bounds = s->bounds;
+    f->blocks.most = s->block_codes;
+    bounds_decode(&s->code, f->filter, &f->bounds);
+    return REFERENCE_OK;
+}
+
+/* ---- marching ---- */
 
 /* ANY_TYPE: the voxels' type is asked at each read. */
-enum { BLOCK_THREADS = 256, ANY_TYPE = -1 };
+enum { BLOCK_THREADS = 256, SEARCH_THREADS = 64, SEARCH_BLOCKS = 16, TILE_PX = 4, ANY_TYPE = -1 };
+
+static constexpr __host__ __device__ int threads_of(kernel_mode mode)
+{
+    return mode == KERNEL_SEARCH ? SEARCH_THREADS : BLOCK_THREADS;
+}
 
 /* Puts a table of one row into shared memory, as lookup says. */
 static __device__ __forceinline__ lookup share_table(const kernel_table &t, int32_t copies_log2, float4 *shared)
@@ -321,28 +423,40 @@ static __device__ __forceinline__ lookup share_table(const kernel_table &t, int3
 }
 
 template <kernel_mode mode, kernel_filter filter, kernel_skip skip, int known_type>
-static __global__ void __launch_bounds__(BLOCK_THREADS, mode == KERNEL_LIT ? 2 : 4)
+static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH ? SEARCH_BLOCKS
+                                                           : mode == KERNEL_LIT  ? 2
+                                                                                 : 4)
     march_kernel(const __grid_constant__ kernel_frame f, const march_launch launch, float4 *rgba, uint32_t *counts)
 {
     extern __shared__ float4 shared[];
     const reference_voxel type = known_type == ANY_TYPE ? f.volume.type : (reference_voxel)known_type;
     const int thread = threadIdx.x;
     lookup table = {(const float4 *)f.table.rgba, sizeof(float4), false};
-    if (mode != KERNEL_LIT || f.table.rows == 1)
+    if (mode == KERNEL_OVER || (mode == KERNEL_LIT && f.table.rows == 1))
         table = share_table(f.table, launch.copies_log2, shared);
     const int lane = thread & 31, warp = thread >> 5, width = 1 << launch.warp_log2, height = 32 >> launch.warp_log2;
-    const int x = (blockIdx.x * 2 + (warp & 1)) * width + (lane & (width - 1));
-    const int y = (blockIdx.y * 4 + (warp >> 1)) * height + (lane >> launch.warp_log2);
-    if (x >= f.camera.width_px || y >= f.camera.height_px)
-        return;
-    kernel_ray ray = ray_make(&f, x, y);
+    int x = (blockIdx.x * 2 + (warp & 1)) * width, y = (blockIdx.y * (threads_of(mode) / 64) + (warp >> 1)) * height;
+    if (mode == KERNEL_SEARCH) { /* lanes that go together are a tile TILE_PX wide */
+        x += lane / TOGETHER * TILE_PX + lane % TILE_PX;
+        y += lane % TOGETHER / TILE_PX;
+    } else {
+        x += lane & (width - 1);
+        y += lane >> launch.warp_log2;
+    }
+    const bool inside = x < f.camera.width_px && y < f.camera.height_px;
+    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0};
+    if (inside)
+        ray = ray_make(&f, x, y);
     packet rays;
     for (int a = 0; a < 3; a++) {
         rays.start[a] = (float)(ray.start[a] + place_shift(filter));
         rays.step[a] = (float)ray.step[a];
     }
     rays.count = ray.count;
-    packet_result result = march(&f, &table, &rays, mode, filter, skip, type);
+    rays.first = ray.first;
+    packet_result result = cast(&f, &table, &rays, mode, filter, skip, type);
+    if (!inside)
+        return;
     size_t i = (size_t)y * f.camera.width_px + x;
     rgba[i] = make_float4(result.rgba[0], result.rgba[1], result.rgba[2], result.rgba[3]);
     counts[i] = (uint32_t)result.samples;
@@ -355,7 +469,14 @@ template <kernel_mode mode, kernel_skip skip> static march_function *by_filter(c
 {
     switch (f->filter) {
     case KERNEL_NEAREST: return march_kernel<mode, KERNEL_NEAREST, skip, ANY_TYPE>;
-    case KERNEL_LINEAR: return march_kernel<mode, KERNEL_LINEAR, skip, ANY_TYPE>;
+    case KERNEL_LINEAR:
+        if constexpr (mode == KERNEL_SEARCH) {
+            if (f->volume.type == REFERENCE_UINT8)
+                return march_kernel<mode, KERNEL_LINEAR, skip, REFERENCE_UINT8>;
+            if (f->volume.type == REFERENCE_UINT16)
+                return march_kernel<mode, KERNEL_LINEAR, skip, REFERENCE_UINT16>;
+        }
+        return march_kernel<mode, KERNEL_LINEAR, skip, ANY_TYPE>;
     case KERNEL_CELLS:
         return f->volume.type == REFERENCE_UINT8 ? march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT8>
                                                  : march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT16>;
@@ -373,54 +494,10 @@ static march_function *march_variant(kernel_mode mode, const kernel_frame *f)
     switch (mode) {
     case KERNEL_OVER: return by_skip<KERNEL_OVER>(f);
     case KERNEL_LIT: return by_skip<KERNEL_LIT>(f);
-    default: return by_skip<KERNEL_MIP>(f);
+    case KERNEL_MIP: return by_filter<KERNEL_MIP, KERNEL_SKIP_NONE>(f);
+    case KERNEL_LEAP: return by_filter<KERNEL_LEAP, KERNEL_SKIP_NONE>(f);
+    default: return by_filter<KERNEL_SEARCH, KERNEL_SKIP_NONE>(f);
     }
-}
-
-/* The width of warps, as a power of two, whose pixels' samples lie in the fewest pieces of memory: of `piece` voxels
- * along each axis, at the volume's centre. */
-static int32_t best_warp(const kernel_frame *f, const double piece[3])
-{
-    const reference_camera *c = &f->camera;
-    double along = 0, length = 0, least = INFINITY;
-    int32_t best = 4;
-    for (int a = 0; a < 3; a++) {
-        double half_x = c->width_px / 2.0, half_y = c->height_px / 2.0;
-        double o = c->origin[0][a] + half_x * c->origin[1][a] + half_y * c->origin[2][a];
-        double d = c->direction[0][a] + half_x * c->direction[1][a] + half_y * c->direction[2][a];
-        along += (f->volume.dims_vox[a] / 2.0 - o) * d;
-        length += d * d;
-    }
-    double depth = length > 0 ? along / length : 0;
-    for (int32_t log2 = 0; log2 <= 5; log2++) {
-        double pieces = 1;
-        for (int a = 0; a < 3; a++) {
-            double across = fabs(c->origin[1][a] + depth * c->direction[1][a]) * ((1 << log2) - 1);
-            double down = fabs(c->origin[2][a] + depth * c->direction[2][a]) * ((32 >> log2) - 1);
-            pieces *= (across + down + 1) / piece[a] + 1;
-        }
-        if (pieces < least) {
-            least = pieces;
-            best = log2;
-        }
-    }
-    return best;
-}
-
-static size_t table_bytes(const kernel_frame *f, int32_t copies_log2)
-{
-    return (f->table.columns + 1) * 2 * sizeof(float4) << copies_log2;
-}
-
-static march_launch launch_of(const kernel_frame *f)
-{
-    static const double line_voxels[] = {128, 64, 32};
-    const double line = f->filter == KERNEL_CELLS ? line_voxels[f->volume.type] / 8 : line_voxels[f->volume.type];
-    const double linear[3] = {line, 1, 1}, texture[3] = {16, 2, 1};
-    march_launch launch = {best_warp(f, f->filter == KERNEL_TEXTURE ? texture : linear), 0};
-    while (launch.copies_log2 < 2 && table_bytes(f, launch.copies_log2 + 1) <= COPIES_BYTES)
-        launch.copies_log2++;
-    return launch;
 }
 
 /* The frame's tables on the card, in place of the host's. */
@@ -435,15 +512,14 @@ static reference_status take_tables(frame_memory *m, kernel_frame *f, vodr_error
         return REFERENCE_OK;
     TRY_STATUS(take(m, count, f->blocks.distance, &piece, error));
     f->blocks.distance = (const uint8_t *)piece;
-    TRY_STATUS(take(m, count * sizeof *f->blocks.most, f->blocks.most, &piece, error));
-    f->blocks.most = (const float *)piece;
     return REFERENCE_OK;
 }
 
-static reference_status take_volume(cuda_state *s, kernel_frame *f, reference_stats *stats, vodr_error *error)
+static reference_status take_volume(cuda_state *s, kernel_mode mode, kernel_frame *f, reference_stats *stats,
+                                    vodr_error *error)
 {
     TRY_STATUS(f->filter == KERNEL_TEXTURE ? need_texture(s, error) : need_linear(s, error));
-    if (f->filter == KERNEL_LINEAR) {
+    if (f->filter == KERNEL_LINEAR && mode != KERNEL_SEARCH) { /* which reads too little for cells to be packed */
         TRY_STATUS(want_cells(s, stats, error));
         f->filter = s->cells ? KERNEL_CELLS : KERNEL_LINEAR;
     }
@@ -459,19 +535,22 @@ static reference_status draw_march(cuda_state *s, frame_memory *m, const device_
     kernel_frame f = job->frame;
     void *out, *counts;
     size_t pixels = (size_t)f.camera.width_px * (size_t)f.camera.height_px;
-    TRY_STATUS(take_volume(s, &f, stats, error));
+    TRY_STATUS(take_volume(s, job->mode, &f, stats, error));
+    TRY_STATUS(take_bounds(s, job->mode, &f, stats, error));
     TRY_STATUS(check_room(pixels * (sizeof *host + sizeof(uint32_t)), "the frame", error));
     TRY_STATUS(take_tables(m, &f, error));
     TRY_STATUS(take(m, pixels * sizeof *host, NULL, &out, error));
     TRY_STATUS(take(m, pixels * sizeof(uint32_t), NULL, &counts, error));
     march_function *variant = march_variant(job->mode, &f);
-    const march_launch launch = launch_of(&f);
-    const int width = 2 << launch.warp_log2, height = 4 * (32 >> launch.warp_log2);
+    const march_launch launch = launch_of(job->mode, &f);
+    const int threads = threads_of(job->mode), width = 2 << launch.warp_log2;
+    const int height = threads / 64 * (32 >> launch.warp_log2);
     const dim3 grid((f.camera.width_px + width - 1) / width, (f.camera.height_px + height - 1) / height);
-    const size_t shared_bytes = table_bytes(&f, launch.copies_log2);
+    const size_t shared_bytes =
+        job->mode == KERNEL_OVER || job->mode == KERNEL_LIT ? table_bytes(&f, launch.copies_log2) : 0;
     TRY(cudaFuncSetAttribute(variant, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared_bytes));
     TRY(cudaEventRecord(s->begin));
-    variant<<<grid, BLOCK_THREADS, shared_bytes>>>(f, launch, (float4 *)out, (uint32_t *)counts);
+    variant<<<grid, threads, shared_bytes>>>(f, launch, (float4 *)out, (uint32_t *)counts);
     TRY_STATUS(finish(s, (const uint32_t *)counts, pixels, stats, error));
     TRY(cudaMemcpy(host, out, pixels * sizeof *host, cudaMemcpyDeviceToHost));
     return REFERENCE_OK;

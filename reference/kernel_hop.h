@@ -9,24 +9,25 @@
 /* Samples taken between two looks. */
 enum { HOP_RUN = 8 };
 
-/* The rays of a packet as one: at sample n, all lie within `around` of middle + n*step along each axis, in cells. */
+/* The rays of all lanes that go together as one: at sample n, all lie within `around` of middle + n*step along each
+ * axis, in cells. */
 typedef struct bundle {
     REAL middle[3], step[3], inverse[3], around[3];
     int32_t most; /* samples of the longest ray */
 } bundle;
 
-/* The bundle of the rays that have samples. */
-KERNEL bundle bundle_of(const packet *rays, REAL shift)
+/* The bundle of the rays that have samples; its sample n is their sample n - lag. */
+KERNEL bundle bundle_of(const packet *rays, whole lag, REAL shift)
 {
     const mask some = rays->count > 0;
     bundle all;
-    all.most = most_of(rays->count);
+    all.most = together_most(rays->count + lag);
     for (int a = 0; a < 3; a++) {
         REAL least[2], most[2];
-        const real along[2] = {rays->start[a] + ((REAL)0.5 - shift), rays->step[a]};
+        const real along[2] = {rays->start[a] - to_real(lag) * rays->step[a] + ((REAL)0.5 - shift), rays->step[a]};
         for (int i = 0; i < 2; i++) {
-            most[i] = most_real(pick(some, along[i], spread((REAL)-1e30)));
-            least[i] = -most_real(pick(some, -along[i], spread((REAL)-1e30)));
+            most[i] = together_most_real(pick(some, along[i], spread((REAL)-1e30)));
+            least[i] = -together_most_real(pick(some, -along[i], spread((REAL)-1e30)));
         }
         all.middle[a] = (least[0] + most[0]) / 2;
         all.step[a] = (least[1] + most[1]) / 2;
@@ -55,26 +56,19 @@ KERNEL int32_t bundle_stays(const kernel_blocks *b, const bundle *all, const REA
 }
 
 /* What march_skip() does, for all rays of the packet by the place of their bundle. */
-KERNEL void march_hop(const kernel_frame *f, const bundle *all, const packet *rays, kernel_mode mode, progress *s)
+KERNEL void march_hop(const kernel_frame *f, const bundle *all, const packet *rays, progress *s)
 {
     const kernel_blocks *b = &f->blocks;
-    if (mode == KERNEL_MIP)
-        s->live = s->live & unless(s->greatest >= (REAL)b->top);
     while (any_lane(s->live)) {
         REAL place[3];
-        int32_t at[3], distance = 0;
+        int32_t at[3];
         for (int a = 0; a < 3; a++) {
             place[a] = all->middle[a] + (REAL)s->n * all->step[a];
             at[a] = (int32_t)((place[a] > 0 ? place[a] : 0) * (REAL)(1.0 / b->edge_vox));
             at[a] = at[a] < b->count[a] ? at[a] : b->count[a] - 1;
         }
         size_t block = ((size_t)at[2] * (size_t)b->count[1] + (size_t)at[1]) * (size_t)b->count[0] + (size_t)at[0];
-        if (mode != KERNEL_MIP)
-            distance = b->distance[block];
-        else if (!any_lane(s->live & (s->greatest < (REAL)b->around[block])))
-            distance = 2;
-        else if (!any_lane(s->live & (s->greatest < (REAL)b->most[block])))
-            distance = 1;
+        const int32_t distance = b->distance[block];
         int32_t stays = distance > 0 ? bundle_stays(b, all, place, at, distance) : 0;
         if (stays == 0) {
             s->end = all->most - s->n > HOP_RUN ? s->n + HOP_RUN : all->most;

@@ -5,9 +5,11 @@
 
 #include "kernel_hop.h"
 
-/* On the CPU cells are asked for this many samples ahead, and with blocks, one in so many samples tells mip first what
- * the maximum is at least. */
-enum { AHEAD = 6, SEED = 32 };
+/* On the CPU cells are asked for this many samples ahead. */
+enum { AHEAD = 6 };
+
+/* What is below the greatest sample. */
+#define MARCH_LOWEST ((REAL)-1e30)
 
 typedef struct packet_result {
     real rgba[4]; /* premultiplied */
@@ -61,12 +63,21 @@ KERNEL void march_over(const kernel_frame *f, const march_lane *lane, const look
         out->rgba[c] = out->rgba[c] + colour[c] * through;
 }
 
-/* Asks for what sample n will read. */
-KERNEL void march_ask(const kernel_frame *f, const packet *rays, reference_voxel type, int32_t n)
+/* Asks for what sample n will read; for gradients also for what lies around the tile of rays: places drawn apart from
+ * the middle by two thirds, a pixel's width for the outer ones of four. */
+KERNEL void march_ask(const kernel_frame *f, const packet *rays, const bundle *all, kernel_mode mode,
+                      reference_voxel type, int32_t n)
 {
     real at = smaller(spread((REAL)n), to_real(rays->count - 1)), place[3];
     for (int a = 0; a < 3; a++)
         place[a] = rays->start[a] + at * rays->step[a];
+    fetch_ahead(&f->volume, type, place);
+    if (mode != KERNEL_LIT)
+        return;
+    for (int a = 0; a < 3; a++) {
+        real apart = place[a] - (all->middle[a] + (REAL)n * all->step[a]);
+        place[a] = clamp_real(place[a] + apart * (REAL)(2 / 3.0), 0, (REAL)f->volume.dims_vox[a]);
+    }
     fetch_ahead(&f->volume, type, place);
 }
 
@@ -103,7 +114,8 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
 
 /* Takes the samples before `end`. On the CPU rays end one by one. */
 KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
-                      kernel_mode mode, kernel_filter filter, reference_voxel type, progress *s, packet_result *out)
+                      kernel_mode mode, kernel_filter filter, reference_voxel type, const bundle *all, progress *s,
+                      packet_result *out)
 {
     const int batch = mode == KERNEL_LIT ? 1 : MAX_BATCH;
     if (LANES > 1) {
@@ -111,11 +123,11 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
         if (asks) {
             ROLLED
             for (int32_t n = s->asked > s->n ? s->asked : s->n; n < s->n + AHEAD; n++)
-                march_ask(f, rays, type, n);
+                march_ask(f, rays, all, mode, type, n);
         }
         while (s->n < s->end && any_lane(s->live)) {
             if (asks)
-                march_ask(f, rays, type, s->n + AHEAD);
+                march_ask(f, rays, all, mode, type, s->n + AHEAD);
             march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
             s->n++;
             s->live = s->live & (s->n < rays->count);
@@ -135,48 +147,38 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
     s->live = s->live & (s->n < rays->count);
 }
 
-/* One in SEED samples of a mip. */
-KERNEL void march_seed(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
-                       kernel_filter filter, reference_voxel type, int32_t most, progress *s, packet_result *out)
+/* What the greatest of all samples shows; MARCH_LOWEST: there was none. */
+KERNEL void march_greatest(const kernel_frame *f, const lookup *entries, real greatest, packet_result *out)
 {
-    ROLLED
-    for (int32_t n = 0; n < most; n += SEED)
-        march_ask(f, rays, type, n);
-    for (; s->n < most; s->n += SEED) {
-        s->live = s->n < rays->count;
-        march_batch(f, lane, entries, rays, KERNEL_MIP, filter, type, 1, true, true, s, out);
-    }
-    s->n = 0;
-    s->live = 0 < rays->count;
+    real colour[4];
+    classify(entries, classify_column(&f->table, greatest), colour);
+    for (int c = 0; c < 4; c++)
+        out->rgba[c] = pick(greatest > MARCH_LOWEST, colour[c], spread(0));
 }
 
-/* The whole ray. mode, filter, skip and type are constants where this is inlined; `entries` is the table, wherever the
- * device keeps it. */
+/* The whole ray, in KERNEL_OVER, KERNEL_LIT or KERNEL_MIP. */
 KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const packet *rays, kernel_mode mode,
                            kernel_filter filter, kernel_skip skip, reference_voxel type)
 {
     packet_result out = {{spread(0), spread(0), spread(0), spread(0)}, spread_whole(0)};
     const march_lane lane = march_prepare(f, rays);
-    const bundle all = bundle_of(rays, place_shift(filter));
     const bool hops = LANES > 1 && filter == KERNEL_CELLS && skip != KERNEL_SKIP_NONE;
-    const REAL lowest = (REAL)-1e30;
-    progress s = {0, skip == KERNEL_SKIP_NONE ? all.most : 0, 0, spread(lowest), 0 < rays->count};
-    if (hops && mode == KERNEL_MIP)
-        march_seed(f, &lane, entries, rays, filter, type, all.most, &s, &out);
+    bundle all;
+    if (LANES > 1)
+        all = bundle_of(rays, spread_whole(0), place_shift(filter));
+    else
+        all.most = most_of(rays->count);
+    progress s = {0, skip == KERNEL_SKIP_NONE ? all.most : 0, 0, spread(MARCH_LOWEST), 0 < rays->count};
     while (any_lane(s.live)) {
         if (hops)
-            march_hop(f, &all, rays, mode, &s);
+            march_hop(f, &all, rays, &s);
         else if (skip != KERNEL_SKIP_NONE)
-            march_skip(f, &lane, rays, mode, filter, &s);
+            march_skip(f, &lane, rays, filter, &s);
         if (any_lane(s.live))
-            march_run(f, &lane, entries, rays, mode, filter, type, &s, &out);
+            march_run(f, &lane, entries, rays, mode, filter, type, &all, &s, &out);
     }
-    if (mode == KERNEL_MIP) {
-        real colour[4];
-        classify(entries, classify_column(&f->table, s.greatest), colour);
-        for (int c = 0; c < 4; c++)
-            out.rgba[c] = pick(s.greatest > lowest, colour[c], spread(0));
-    }
+    if (mode == KERNEL_MIP)
+        march_greatest(f, entries, s.greatest, &out);
     return out;
 }
 

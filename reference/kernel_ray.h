@@ -48,7 +48,7 @@ KERNEL void ray_clip(double start, double step, int32_t size, int64_t *lo, int64
 KERNEL kernel_ray ray_make(const kernel_frame *f, int32_t x, int32_t y)
 {
     const reference_camera *c = &f->camera;
-    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0};
+    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0};
     int64_t lo = 0, hi = c->most;
     double o[3], d[3], square = 0;
     for (int a = 0; a < 3; a++) {
@@ -71,6 +71,7 @@ KERNEL kernel_ray ray_make(const kernel_frame *f, int32_t x, int32_t y)
     if (lo >= hi)
         return ray;
     ray.count = (int32_t)(hi - lo);
+    ray.first = (int32_t)lo;
     for (int a = 0; a < 3; a++) {
         ray.start[a] = ray_along(o[a], (double)lo, d[a]);
         ray.step[a] = d[a];

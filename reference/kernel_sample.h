@@ -54,6 +54,8 @@ KERNEL real sample_linear(const kernel_volume *v, reference_voxel type, const re
     const int32_t stride[3] = {1, v->dims_vox[0], v->dims_vox[0] * v->dims_vox[1]};
     whole offset[3][2];
     real share[3], value[8];
+    if (!coarse && fetch_pairs(v, type, place, share, value))
+        return mix_around(value, 1, share);
     for (int a = 0; a < 3; a++) {
         sample_axis(place[a], v->dims_vox[a], stride[a], offset[a], &share[a]);
         if (coarse)
@@ -93,14 +95,29 @@ KERNEL real sample(const kernel_volume *v, reference_voxel type, kernel_filter f
 #endif
 }
 
-/* Central differences over two voxels along each axis, in stored values a finest voxel. The loop stays one, as what is
- * in it is large. */
+/* Central differences over two voxels along each axis, in stored values a finest voxel. On a card the loop stays one,
+ * as what is in it is large; on the CPU the six places share most of what is computed of them. */
 KERNEL void sample_gradient(const kernel_frame *f, reference_voxel type, kernel_filter filter, const real p[3],
                             real gradient[3])
 {
     const REAL shift = place_shift(filter);
     for (int a = 0; a < 3; a++)
         gradient[a] = spread(0);
+    if (LANES > 1) {
+        real place[3][3];
+        for (int a = 0; a < 3; a++)
+            for (int i = 0; i < 3; i++)
+                place[a][i] = clamp_real(p[a] + (REAL)(i - 1), shift, (REAL)f->volume.dims_vox[a] + shift);
+        UNROLLED
+        for (int n = 0; n < 6; n++) {
+            const int a = n / 2, side = n % 2 ? 1 : -1;
+            const real at[3] = {place[0][a == 0 ? side + 1 : 1], place[1][a == 1 ? side + 1 : 1],
+                                place[2][a == 2 ? side + 1 : 1]};
+            real value = sample(&f->volume, type, filter, at);
+            gradient[a] = gradient[a] + value * ((REAL)side * (REAL)(0.5 / f->camera.spacing_vox[a]));
+        }
+        return;
+    }
     ROLLED
     for (int n = 0; n < 6; n++) {
         const REAL side = n < 3 ? -1 : 1;

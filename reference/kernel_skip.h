@@ -8,6 +8,7 @@
 typedef struct packet {
     real start[3], step[3];
     whole count;
+    whole first; /* as of kernel_ray */
 } packet;
 
 /* Where the rays of a packet are: all at the same of their samples, so that what they read lies together. */
@@ -18,6 +19,12 @@ typedef struct progress {
     real greatest; /* mip: so far */
     mask live;     /* rays that have sample n and are not opaque */
 } progress;
+
+/* What a code stands for. */
+KERNEL real bound_value(const kernel_bounds *b, whole code)
+{
+    return to_real(code) * (REAL)b->scale + (REAL)b->offset_value;
+}
 
 /* The block of a place in the volume, its number along each axis and in all. */
 KERNEL whole block_of(const kernel_blocks *b, REAL shift, const real p[3], whole at[3])
@@ -48,14 +55,11 @@ KERNEL whole samples_to_leave(const kernel_blocks *b, REAL shift, const march_la
 
 /* Once all samples before `end` are taken: moves to the next at which a live ray is in a block that shows something,
  * and `end` to where all such rays may have left theirs. */
-KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_mode mode,
-                       kernel_filter filter, progress *s)
+KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const packet *rays, kernel_filter filter,
+                       progress *s)
 {
     const kernel_blocks *b = &f->blocks;
     const REAL shift = place_shift(filter);
-    const REAL above = filter == KERNEL_TEXTURE ? (REAL)(1 + 0x1p-16) : 1; /* a texture unit's own rounding */
-    if (mode == KERNEL_MIP)
-        s->live = s->live & unless(s->greatest >= (REAL)b->top * above);
     while (any_lane(s->live)) {
         real p[3];
         whole at[3], distance;
@@ -63,10 +67,7 @@ KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const pack
         for (int a = 0; a < 3; a++)
             p[a] = rays->start[a] + from * rays->step[a];
         whole block = block_of(b, shift, p, at);
-        if (mode == KERNEL_MIP)
-            distance = pick_whole(fetch_float(b->most, block) * above <= s->greatest, spread_whole(1), spread_whole(0));
-        else
-            distance = fetch_byte(b->distance, block);
+        distance = fetch_byte(b->distance, block);
         mask shows = distance == 0;
         whole next = s->n + samples_to_leave(b, shift, lane, p, at, pick_whole(shows, spread_whole(1), distance));
         shows = shows & s->live;

@@ -14,15 +14,23 @@ typedef enum kernel_filter {
 } kernel_filter;
 
 /* What becomes of the samples of a ray. */
-typedef enum kernel_mode { KERNEL_OVER, KERNEL_LIT, KERNEL_MIP, KERNEL_MODES } kernel_mode;
+typedef enum kernel_mode {
+    KERNEL_OVER,
+    KERNEL_LIT,
+    KERNEL_MIP,
+    KERNEL_LEAP,   /* mip past blocks: kernel_leap.h */
+    KERNEL_SEARCH, /* mip best bounds first: kernel_search.h */
+    KERNEL_MODES
+} kernel_mode;
 
-/* What a block's byte says. */
+/* Whether blocks with nothing to show are passed over, in KERNEL_OVER and KERNEL_LIT. */
 typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIPS } kernel_skip;
 
 /* One pixel's ray, clipped to the volume: sample n of `count` lies at start + n*step, in voxels. */
 typedef struct kernel_ray {
     double start[3], step[3];
     int32_t count;
+    int32_t first; /* number of sample 0 on the ray before it was clipped: the same plane for all pixels */
 } kernel_ray;
 
 /* Cell i of an axis lies between the centres of voxels i-1 and i, clamped to the volume, so that an axis has one more
@@ -40,10 +48,20 @@ typedef struct kernel_volume {
 typedef struct kernel_blocks {
     int32_t edge_vox, count[3];
     const uint8_t *distance; /* over */
-    const float *most;       /* mip: the greatest stored value a sample in the block can have */
-    const float *around;     /* the CPU's mip: the same of a block and all blocks that touch it */
-    float top;               /* of all blocks */
+    const uint16_t *most;    /* KERNEL_LEAP: a code of the greatest value that a sample in the block can have */
+    bool bisects, seeds;     /* KERNEL_LEAP: blocks are left by bisection; the middle sample comes first */
 } kernel_blocks;
+
+/* What samples can be at most, as codes that rise with it: grid 0 has the code of each cell; entry (i, j, l) of grid k
+ * that of a window of four times 2^k cells a side, which begins at cell (i, j, l)*2^k. The last grid has one entry. */
+enum { BOUND_GRIDS = 17 };
+
+typedef struct kernel_bounds {
+    const uint16_t *codes;
+    int32_t levels, count[BOUND_GRIDS][3];
+    int64_t offset[BOUND_GRIDS]; /* of a grid in codes */
+    float scale, offset_value;   /* a code stands for code*scale + offset_value */
+} kernel_bounds;
 
 /* Colour of a sample: entries of r, g, b, a. Each row has a copy of its last entry behind it, and the last row a copy
  * below, so that what is linear between entries needs no care at the ends. */
@@ -59,6 +77,7 @@ typedef struct kernel_frame {
     reference_camera camera;
     kernel_volume volume;
     kernel_blocks blocks;
+    kernel_bounds bounds; /* KERNEL_SEARCH; of KERNEL_LEAP only what a code stands for */
     kernel_table table;
     kernel_filter filter;
     kernel_skip skip;

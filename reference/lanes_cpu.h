@@ -20,7 +20,7 @@ typedef REAL real __attribute__((vector_size(64)));
 typedef WHOLE_OF(REAL) whole __attribute__((vector_size(64)));
 typedef whole mask;
 
-enum { LANES = sizeof(real) / sizeof(REAL), MAX_BATCH = 1 };
+enum { LANES = sizeof(real) / sizeof(REAL), TOGETHER = LANES, MAX_BATCH = 1, SEARCH_RUN = 4, SEARCH_RUNS = 256 };
 
 KERNEL real spread(REAL x)
 {
@@ -100,6 +100,9 @@ KERNEL bool any_lane(mask m)
 /* The greatest and the least of all lanes. */
 KERNEL int32_t most_of(whole i)
 {
+#if defined(__AVX512F__) && defined(LANES_OF_FLOAT)
+    return _mm512_reduce_max_epi32((__m512i)i);
+#endif
     WHOLE_OF(REAL) lane[LANES], most = i[0];
     memcpy(lane, &i, sizeof lane);
     for (int l = 1; l < LANES; l++)
@@ -114,11 +117,43 @@ KERNEL int32_t least_of(whole i)
 
 KERNEL REAL most_real(real x)
 {
+#if defined(__AVX512F__) && defined(LANES_OF_FLOAT)
+    return _mm512_reduce_max_ps((__m512)x);
+#endif
     REAL lane[LANES], most = x[0];
     memcpy(lane, &x, sizeof lane);
     for (int l = 1; l < LANES; l++)
         most = lane[l] > most ? lane[l] : most;
     return most;
+}
+
+/* 0 to TOGETHER - 1. */
+KERNEL whole lane_number(void)
+{
+    whole i;
+    for (int l = 0; l < LANES; l++)
+        i[l] = l;
+    return i;
+}
+
+KERNEL bool together_any(mask m)
+{
+    return any_lane(m);
+}
+
+KERNEL int32_t together_most(whole i)
+{
+    return most_of(i);
+}
+
+KERNEL int32_t together_least(whole i)
+{
+    return least_of(i);
+}
+
+KERNEL REAL together_most_real(real x)
+{
+    return most_real(x);
 }
 
 KERNEL mask unless(mask m)
@@ -160,14 +195,6 @@ KERNEL whole fetch_byte(const uint8_t *bytes, whole index)
     return value;
 }
 
-KERNEL real fetch_float(const float *values, whole index)
-{
-    real value;
-    for (int l = 0; l < LANES; l++)
-        value[l] = values[index[l]];
-    return value;
-}
-
 /* A table in memory. */
 typedef struct lookup {
     const REAL *rgba;
@@ -177,7 +204,21 @@ typedef struct lookup {
 #include "lanes_cpu_float.h"
 #else
 
-/* Packed cells are of use where speed is. */
+KERNEL whole fetch_word(const uint16_t *words, whole index)
+{
+    whole value;
+    for (int l = 0; l < LANES; l++)
+        value[l] = words[index[l]];
+    return value;
+}
+
+/* Rows of pairs and packed cells are of use where speed is. */
+KERNEL bool fetch_pairs(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
+{
+    (void)v, (void)type, (void)place, (void)share, (void)edge;
+    return false;
+}
+
 KERNEL void fetch_ahead(const kernel_volume *v, reference_voxel type, const real place[3])
 {
     (void)v, (void)type, (void)place;

@@ -5,6 +5,7 @@
 
 typedef int32_t four __attribute__((vector_size(16)));
 typedef uint64_t two_wide __attribute__((vector_size(16)));
+typedef uint16_t shorts __attribute__((vector_size(32)));
 
 #define JOIN_8(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
 #define JOIN_16(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
@@ -48,6 +49,37 @@ KERNEL void load_pairs(const void *base, size_t stride, const int32_t index[LANE
     whole even = join(row[0], row[2], row[4], row[6]), odd = join(row[1], row[3], row[5], row[7]);
     column[0] = QUARTERS(even, odd, 0, 2, 4, 6);
     column[1] = QUARTERS(even, odd, 1, 3, 5, 7);
+}
+
+/* Loads 2 bytes a lane, `stride` bytes times index[] on. */
+KERNEL whole load_shorts(const void *base, size_t stride, whole index)
+{
+    int32_t at[LANES];
+    uint16_t lane[LANES];
+    shorts row;
+    memcpy(at, &index, sizeof at);
+    for (int l = 0; l < LANES; l++)
+        memcpy(&lane[l], (const char *)base + stride * (size_t)at[l], sizeof lane[l]);
+    for (int l = 0; l < LANES; l++)
+        row[l] = lane[l];
+    return __builtin_convertvector(row, whole);
+}
+
+/* Loads 4 bytes a lane, 2 bytes times index[] on. */
+KERNEL whole load_words(const void *base, whole index)
+{
+    int32_t at[LANES], lane[LANES];
+    memcpy(at, &index, sizeof at);
+    for (int l = 0; l < LANES; l++)
+        memcpy(&lane[l], (const char *)base + 2 * (size_t)at[l], sizeof lane[l]);
+    const four a = {lane[0], lane[1], lane[2], lane[3]}, b = {lane[4], lane[5], lane[6], lane[7]};
+    const four c = {lane[8], lane[9], lane[10], lane[11]}, d = {lane[12], lane[13], lane[14], lane[15]};
+    return join(a, b, c, d);
+}
+
+KERNEL whole fetch_word(const uint16_t *words, whole index)
+{
+    return load_shorts(words, sizeof *words, index);
 }
 
 /* Mixes voxel `shift` bits up in the words. */
@@ -96,6 +128,35 @@ KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real
         for (int i = 0; i < 4; i++)
             edge[i] = mix_words(word[i / 2], word[2 + i / 2], 16 * (i % 2), 0xFFFF, share[0]);
     }
+}
+
+/* What fetch_edges() does, from the voxels as they are, two of a row at a time; false where a lane's cell lies on the
+ * volume's border, or voxels are floats. */
+KERNEL bool fetch_pairs(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
+{
+    const int32_t *size = v->dims_vox;
+    const size_t bytes = type == REFERENCE_UINT8 ? 1 : 2;
+    whole low[3];
+    mask border = spread_whole(0);
+    if (type == REFERENCE_FLOAT32)
+        return false;
+    for (int a = 0; a < 3; a++) {
+        whole cell = truncate(place[a]);
+        share[a] = place[a] - to_real(cell);
+        low[a] = cell - 1;
+        border = border | (low[a] < 0) | (low[a] > size[a] - 2);
+    }
+    if (any_lane(border))
+        return false;
+    whole first = (low[2] * size[1] + low[1]) * size[0] + low[0];
+    for (int i = 0; i < 4; i++) {
+        const size_t row = (size_t)(i % 2) * (size_t)size[0] + (size_t)(i / 2) * (size_t)size[0] * (size_t)size[1];
+        const char *voxels = (const char *)v->voxels + bytes * row;
+        const whole pair = bytes == 1 ? load_shorts(voxels, bytes, first) : load_words(voxels, first);
+        const int shift = bytes == 1 ? 8 : 16;
+        edge[i] = mix_words(pair, pair >> shift, 0, (1 << shift) - 1, share[0]);
+    }
+    return true;
 }
 
 /* The colour between entry `at` and the one behind it. */

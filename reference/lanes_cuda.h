@@ -8,7 +8,7 @@ typedef REAL real;
 typedef int32_t whole;
 typedef bool mask;
 
-enum { LANES = 1, MAX_BATCH = 4 };
+enum { LANES = 1, MAX_BATCH = 4, TOGETHER = 16, SEARCH_RUN = 4, SEARCH_RUNS = 128 };
 
 KERNEL real spread(REAL x)
 {
@@ -82,9 +82,42 @@ KERNEL int32_t least_of(whole i)
     return i;
 }
 
-KERNEL REAL most_real(real x)
+/* 0 to TOGETHER - 1. */
+KERNEL whole lane_number()
 {
-    return x;
+    return threadIdx.x & (TOGETHER - 1);
+}
+
+/* The threads of the warp that go together with this. */
+KERNEL unsigned together_mask()
+{
+    return ~0u >> (32 - TOGETHER) << (threadIdx.x & 31 & ~(TOGETHER - 1));
+}
+
+KERNEL bool together_any(mask m)
+{
+    return __any_sync(together_mask(), m);
+}
+
+KERNEL int32_t together_most(whole i)
+{
+    return __reduce_max_sync(together_mask(), i);
+}
+
+KERNEL int32_t together_least(whole i)
+{
+    return __reduce_min_sync(together_mask(), i);
+}
+
+/* Floats in the order of integers: those below zero are turned round. */
+KERNEL int32_t float_order(int32_t bits)
+{
+    return bits < 0 ? bits ^ INT32_MAX : bits;
+}
+
+KERNEL REAL together_most_real(real x)
+{
+    return __int_as_float(float_order(together_most(float_order(__float_as_int(x)))));
 }
 
 KERNEL mask unless(mask m)
@@ -119,9 +152,9 @@ KERNEL whole fetch_byte(const uint8_t *bytes, whole index)
     return __ldg(bytes + index);
 }
 
-KERNEL real fetch_float(const float *values, whole index)
+KERNEL whole fetch_word(const uint16_t *words, whole index)
 {
-    return __ldg(values + index);
+    return __ldg(words + index);
 }
 
 /* Voxels of 8 or 16 bits as floats, raised by 2^23. */
@@ -164,6 +197,12 @@ KERNEL void fetch_edges(const kernel_volume *v, reference_voxel type, const real
         edge[2] = mix_raised<16>(cell.z, 0, share[0]);
         edge[3] = mix_raised<16>(cell.w, 0, share[0]);
     }
+}
+
+/* A card's threads read as fast one by one. */
+KERNEL bool fetch_pairs(const kernel_volume *v, reference_voxel type, const real place[3], real share[3], real edge[4])
+{
+    return false;
 }
 
 /* A card hides what reads take by other warps. */

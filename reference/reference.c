@@ -9,9 +9,10 @@
 #include <time.h>
 
 #include "blocks.h"
+#include "bounds.h"
 #include "device.h"
 
-enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MAX_BLOCK_VOX = 32768, MOST_SAMPLES = 1 << 24 };
+enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MOST_SAMPLES = 1 << 24 };
 
 /* A gradient of the whole window over this many finest voxels makes a whole surface. */
 static const double surface_vox = 1024;
@@ -226,9 +227,11 @@ static reference_status check_march(const reference *r, const reference_march_jo
         return reference_fail(error, REFERENCE_INVALID,
                               "the table is %dx%d, must have 2 to %d columns and at most %d entries", t->columns,
                               t->rows, MAX_COLUMNS, MAX_TABLE);
-    if (job->block_vox < 2 || job->block_vox > MAX_BLOCK_VOX)
+    if (job->block_vox < 2 || job->block_vox > VODR_MAX_DIM_VOX)
         return reference_fail(error, REFERENCE_INVALID, "a block has %d voxels a side, must have 2 to %d",
-                              job->block_vox, MAX_BLOCK_VOX);
+                              job->block_vox, VODR_MAX_DIM_VOX);
+    if (!reference_accel_suits(job->accel, job->blend))
+        return reference_fail(error, REFERENCE_INVALID, "bisection and seeds are of the maximum, not of over");
     if (job->camera.most > MOST_SAMPLES)
         return reference_fail(error, REFERENCE_INVALID, "a ray has %lld samples, must have at most %d",
                               (long long)job->camera.most, MOST_SAMPLES);
@@ -299,10 +302,19 @@ static kernel_table table_of(const reference_march_job *job, const void *rgba)
     return k;
 }
 
-static kernel_mode mode_of(const reference_march_job *job)
+bool reference_accel_suits(reference_accel accel, reference_blend blend)
 {
-    if (job->blend == REFERENCE_MIP)
+    return blend == REFERENCE_MIP || (accel != REFERENCE_ACCEL_BISECT && accel != REFERENCE_ACCEL_SEED);
+}
+
+static kernel_mode mode_of(const reference *r, const reference_march_job *job)
+{
+    kernel_bounds bounds;
+    if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_NONE)
         return KERNEL_MIP;
+    if (job->blend == REFERENCE_MIP)
+        return job->accel == REFERENCE_ACCEL_BEST && bounds_shape(r->volume.dims_vox, &bounds) > 0 ? KERNEL_SEARCH
+                                                                                                   : KERNEL_LEAP;
     return job->shading == REFERENCE_PHONG || job->table.rows > 1 ? KERNEL_LIT : KERNEL_OVER;
 }
 
@@ -313,12 +325,23 @@ static kernel_filter filter_of(const reference_march_job *job)
     return job->numbers == REFERENCE_TEXTURE ? KERNEL_TEXTURE : KERNEL_LINEAR;
 }
 
+static kernel_blocks blocks_of(const reference *r, const reference_march_job *job)
+{
+    kernel_blocks b = {.edge_vox = job->block_vox,
+                       .distance = r->blocks.distance,
+                       .bisects = job->accel >= REFERENCE_ACCEL_BISECT,
+                       .seeds = job->accel >= REFERENCE_ACCEL_SEED};
+    for (int a = 0; a < 3; a++)
+        b.count[a] = bounds_count(r->volume.dims_vox[a], job->block_vox);
+    return b;
+}
+
 reference_status reference_march(reference *r, const reference_march_job *job, double *rgba, reference_stats *stats,
                                  vodr_error *error)
 {
     *stats = (reference_stats){0};
     reference_status status = check_march(r, job, error);
-    bool skips = job->accel != REFERENCE_ACCEL_NONE;
+    const bool skips = job->accel != REFERENCE_ACCEL_NONE && job->blend != REFERENCE_MIP;
     if (status == REFERENCE_OK && skips)
         status = need_blocks(r, job->block_vox, stats, error);
     if (status != REFERENCE_OK)
@@ -341,16 +364,9 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
                                 .phong = job->shading == REFERENCE_PHONG,
                                 .surface_scale = fabs(job->window_scale) * surface_vox},
                       .numbers = job->numbers,
-                      .mode = mode_of(job)};
+                      .mode = mode_of(r, job)};
     memcpy(m.frame.volume.dims_vox, r->volume.dims_vox, sizeof r->volume.dims_vox);
-    if (skips) {
-        m.frame.blocks = (kernel_blocks){.edge_vox = r->blocks.edge_vox,
-                                         .distance = r->blocks.distance,
-                                         .most = r->blocks.most,
-                                         .around = r->blocks.around,
-                                         .top = r->blocks.top};
-        memcpy(m.frame.blocks.count, r->blocks.count, sizeof r->blocks.count);
-    }
+    m.frame.blocks = blocks_of(r, job);
     stats->prepare_ms = now_ms() - begin_ms;
     status = r->ops->march(r->state, &m, rgba, stats, error);
     free(table);

@@ -81,12 +81,19 @@ typedef enum reference_blend { REFERENCE_OVER, REFERENCE_MIP } reference_blend;
 typedef enum reference_filter { REFERENCE_NEAREST, REFERENCE_LINEAR } reference_filter;
 typedef enum reference_shading { REFERENCE_UNLIT, REFERENCE_PHONG } reference_shading;
 
-/* How empty space is passed over; none changes a byte. */
+/* How what does not show is passed over; none changes a byte. */
 typedef enum reference_accel {
     REFERENCE_ACCEL_NONE,
-    REFERENCE_ACCEL_BLOCK, /* a block that is transparent, or cannot raise the maximum, is left at its far side */
-    REFERENCE_ACCEL_BEST,  /* over: blocks also know how far the nearest visible one is; mip: as block */
+    REFERENCE_ACCEL_BLOCK,  /* a block that is transparent, or cannot raise the maximum, is left at its far side */
+    REFERENCE_ACCEL_BISECT, /* mip: the same, its far side found by bisection */
+    REFERENCE_ACCEL_SEED,   /* mip: the same, and the middle sample of the ray comes first */
+    REFERENCE_ACCEL_BEST,   /* the fastest there is; over: blocks know how far the nearest visible one is; mip: the
+                               samples of the greatest bounds first */
+    REFERENCE_ACCELS,
 } reference_accel;
+
+/* Whether a blend has an accel. */
+bool reference_accel_suits(reference_accel accel, reference_blend blend);
 
 /* The rays of a frame. With o = origin[0] + x*origin[1] + y*origin[2] and d likewise, sample j, 0 the nearest, lies at
  * o + (first + j*spacing)*d, in voxels. */
@@ -122,7 +129,7 @@ typedef struct reference_march_job {
     reference_filter filter;
     reference_shading shading;
     reference_accel accel;
-    int32_t block_vox;  /* edge of a block, 2 to 64 */
+    int32_t block_vox;  /* edge of a block, 2 to VODR_MAX_DIM_VOX; mip's best has blocks of its own */
     double termination; /* a ray ends at this opacity; above 1: never */
     reference_table table;
     double window_scale, window_offset; /* place in the window, 0 to 1 = stored*scale + offset */

@@ -156,10 +156,18 @@ expect "machine list has paper-32" '^paper-32 ' ../out
     bad 2 "--device 'gpu': must be cpu or cuda" "$vodr" reference $raw -o no.png --device gpu
     bad 2 "--method 'rays': must be slices or raycast" "$vodr" reference $raw -o no.png --method rays
     bad 2 "--numbers 'half': must be fixed, float, double or texture" "$vodr" reference $raw -o no.png --numbers half
-    bad 2 "--accel 'hull': must be none, block or best" "$vodr" reference $raw -o no.png --accel hull
+    bad 2 "--accel 'hull': must be none, block, bisect, seed or best" "$vodr" reference $raw -o no.png --accel hull
     bad 2 "--shading 'flat': must be none or phong" "$vodr" reference $raw -o no.png --shading flat
     bad 2 "--step '0': must be" "$vodr" reference $raw -o no.png --method raycast --step 0
+    bad 2 "--block '0': must be" "$vodr" reference $raw -o no.png --block 0
     bad 2 "--block '1': must be" "$vodr" reference $raw -o no.png --block 1
+    bad 2 "--accel seed goes with blend=mip" "$vodr" reference $raw -o no.png --accel seed
+    good "reference, mip" "$vodr" reference $raw --blend mip --accel none --raw r.rgba
+    for how in block bisect seed best 'seed --block 2' 'block --block 32768'; do
+        good "reference, mip, --accel $how" "$vodr" reference $raw --blend mip --accel $how --raw t.rgba
+        same "draws the same bytes" r.rgba t.rgba
+    done
+    rm -f r.rgba t.rgba
     bad 2 "--termination '1.5': must be" "$vodr" reference $raw -o no.png --termination 1.5
     bad 2 "--slices '0': must be" "$vodr" reference $raw -o no.png --slices 0
     bad 2 "--method raycast has no --numbers fixed" "$vodr" reference $raw -o no.png --method raycast --numbers fixed

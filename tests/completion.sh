@@ -77,7 +77,7 @@ offers 'render --zoom ' ''
 offers 'reference --device ' cpu cuda
 offers 'reference --method ' slices raycast
 offers 'reference --numbers ' fixed float double texture
-offers 'reference --accel ' none block best
+offers 'reference --accel ' none block bisect seed best
 offers 'reference --shading ' none phong
 offers 'sweep --plot-type ' line bar heat pareto
 offers 'sweep --list ' volume.nrrd

@@ -104,7 +104,7 @@ static reference_march_job random_job(test_case *c, double *rgba)
         .blend = rng_one_in(r, 3) ? REFERENCE_MIP : REFERENCE_OVER,
         .filter = rng_one_in(r, 4) ? REFERENCE_NEAREST : REFERENCE_LINEAR,
         .shading = rng_one_in(r, 3) ? REFERENCE_PHONG : REFERENCE_UNLIT,
-        .block_vox = (int32_t)(rng_one_in(r, 4) ? rng_int(r, 2, 64) : rng_int(r, 2, 4)),
+        .block_vox = (int32_t)(rng_one_in(r, 4) ? rng_int(r, 2, 200) : rng_int(r, 2, 4)),
         .termination = rng_one_in(r, 3) ? 2 : rng_real(r, 0.3, 1),
         .table = {COLUMNS, by_gradient ? ROWS : 1, rgba, by_gradient ? rng_real(r, 0.05, 1) : 0},
         .window_scale = 1 / width,
@@ -123,6 +123,8 @@ typedef struct way {
 static const way ways[] = {
     {"none", 1, VODR_SIMD_BEST, REFERENCE_ACCEL_NONE},
     {"block", 1, VODR_SIMD_BEST, REFERENCE_ACCEL_BLOCK},
+    {"bisect", 1, VODR_SIMD_BEST, REFERENCE_ACCEL_BISECT},
+    {"seed", 1, VODR_SIMD_BEST, REFERENCE_ACCEL_SEED},
     {"best", 1, VODR_SIMD_BEST, REFERENCE_ACCEL_BEST},
     {"portable", 1, VODR_SIMD_PORTABLE, REFERENCE_ACCEL_NONE},
     {"avx2", 2, VODR_SIMD_AVX2, REFERENCE_ACCEL_BEST},
@@ -154,6 +156,8 @@ static bool ways_agree(test_case *c, FILE *file)
     double *first = malloc(channels * sizeof *first), *other = malloc(channels * sizeof *other);
     bool same = first && other && draw_way(c, job, &ways[0], first, file);
     for (size_t i = 0; same && i < sizeof ways / sizeof *ways; i++) {
+        if (!reference_accel_suits(ways[i].accel, job.blend))
+            continue;
         same = draw_way(c, job, &ways[i], other, file);
         for (size_t n = 0; same && n < channels; n++)
             if (memcmp(&first[n], &other[n], sizeof *first) != 0) {

@@ -137,7 +137,9 @@ static bool accelerate(reference *device, const reference_march_job *job, refere
 {
     reference_stats stats;
     bool good = march(device, *job, numbers, REFERENCE_ACCEL_NONE, a, &stats);
-    for (int accel = REFERENCE_ACCEL_BLOCK; good && accel <= REFERENCE_ACCEL_BEST; accel++) {
+    for (int accel = REFERENCE_ACCEL_BLOCK; good && accel < REFERENCE_ACCELS; accel++) {
+        if (!reference_accel_suits((reference_accel)accel, job->blend))
+            continue;
         good = march(device, *job, numbers, (reference_accel)accel, b, &stats);
         if (good && memcmp(a, b, channels * sizeof *a) != 0) {
             t->accel_differ++;

@@ -1,0 +1,351 @@
+/* mip_frames.c - the maximum by every --accel on a device: random frames held against `none`, and the figures of the
+ * paper (Kye and Kim: Table 2, Figure 8) on a volume enlarged to the size of one of the paper's. Lines of JSON.
+ *
+ *   mip_frames DEVICE matrix CASES
+ *   mip_frames DEVICE table|figure NAME VOLUME.raw TYPE FROM TO SIDE_PX ROUNDS [THREADS]
+ * DEVICE: cuda or cpu; TYPE: uint8 or int16; FROM, TO: WxHxD voxels, in the file and enlarged. A table is of blocks of
+ * 2 voxels, a figure of all sizes to the volume's. Every picture is held against none's: exit 1 when one differs. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "camera.h"
+#include "cases.h"
+#include "enlarge.h"
+#include "reference.h"
+#include "stopwatch.h"
+
+enum { COLUMNS = 256, MAX_ROUNDS = 99, MAX_ENTRIES = 8 };
+
+static const char *const accel_names[] = {"none", "block", "bisect", "seed", "best"};
+
+static bool say(reference_status status, const char *what, const vodr_error *error)
+{
+    if (status != REFERENCE_OK)
+        fprintf(stderr, "mip_frames: %s: %s\n", what, error->text);
+    return status == REFERENCE_OK;
+}
+
+static void fill_ramp(double *rgba)
+{
+    for (int i = 0; i < COLUMNS; i++) {
+        for (int c = 0; c < 3; c++)
+            rgba[4 * i + c] = i / (COLUMNS - 1.0);
+        rgba[4 * i + 3] = 1;
+    }
+}
+
+static double cpu_now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- matrix ---- */
+
+typedef struct tally {
+    uint64_t cases, frames, differ;
+    uint64_t samples[REFERENCE_ACCELS];
+} tally;
+
+static bool draw(reference *r, reference_march_job job, reference_accel accel, int32_t block_vox, double *rgba,
+                 reference_stats *stats)
+{
+    vodr_error error;
+    job.accel = accel;
+    job.block_vox = block_vox;
+    return say(reference_march(r, &job, rgba, stats, &error), accel_names[accel], &error);
+}
+
+/* The case's voxels as floats, some below zero; NULL when the host is out of memory. */
+static float *as_floats(test_case *c)
+{
+    const int32_t *dims = c->input.dims_vox;
+    size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
+    float *values = malloc(count * sizeof *values);
+    double scale = rng_real(&c->random, 1e-3, 10), offset = rng_real(&c->random, -1e5, 1e4);
+    for (size_t i = 0; values && i < count; i++) {
+        double stored = c->input.voxel_bytes == 1 ? ((uint8_t *)c->input.voxels)[i] : ((uint16_t *)c->input.voxels)[i];
+        values[i] = (float)(stored * scale + offset);
+    }
+    return values;
+}
+
+static reference_march_job random_job(test_case *c, const double *table)
+{
+    rng *r = &c->random;
+    double spacing[3], finest = fmin(c->geometry.spacing[0], fmin(c->geometry.spacing[1], c->geometry.spacing[2]));
+    for (int a = 0; a < 3; a++)
+        spacing[a] = c->geometry.spacing[a] / finest;
+    return (reference_march_job){.camera = rng_one_in(r, 2)
+                                               ? reference_camera_rays(&c->view, spacing, rng_real(r, 0.1, 2))
+                                               : reference_camera_slices(&c->view),
+                                 .blend = REFERENCE_MIP,
+                                 .numbers = rng_one_in(r, 3) ? REFERENCE_TEXTURE : REFERENCE_FLOAT,
+                                 .filter = rng_one_in(r, 5) ? REFERENCE_NEAREST : REFERENCE_LINEAR,
+                                 .termination = 2,
+                                 .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
+                                 .window_scale = 1 / (c->input.voxel_bytes == 1 ? 255.0 : 65535.0)};
+}
+
+/* Blocks of 2, of a few voxels, of as many as the volume has, and of more. */
+static bool hold_case(test_case *c, reference *r, const double *table, double *none, double *other, tally *t)
+{
+    const int32_t *dims = c->input.dims_vox;
+    const int32_t longest =
+        dims[0] > dims[1] ? (dims[0] > dims[2] ? dims[0] : dims[2]) : (dims[1] > dims[2] ? dims[1] : dims[2]);
+    const int32_t edges[] = {2, (int32_t)rng_int(&c->random, 3, 20), longest < 2 ? 2 : longest, longest + 100};
+    const reference_march_job job = random_job(c, table);
+    const size_t bytes = 4 * (size_t)c->view.width_px * (size_t)c->view.height_px * sizeof *none;
+    reference_stats stats;
+    if (!draw(r, job, REFERENCE_ACCEL_NONE, 2, none, &stats))
+        return false;
+    t->samples[0] += stats.samples;
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+        for (int e = 0; e < (accel == REFERENCE_ACCEL_BEST ? 1 : 4); e++) {
+            if (!draw(r, job, (reference_accel)accel, edges[e], other, &stats))
+                return false;
+            t->frames++;
+            t->samples[accel] += e == 0 ? stats.samples : 0;
+            if (memcmp(none, other, bytes) != 0) {
+                t->differ++;
+                fprintf(stderr, "mip_frames: %s, blocks of %d: not the picture of none\n", accel_names[accel],
+                        edges[e]);
+                case_print(stderr, c, &c->machine);
+            }
+        }
+    return true;
+}
+
+static bool one_case(uint64_t seed, const reference_options *options, const double *table, tally *t)
+{
+    test_case c;
+    reference *r = NULL;
+    vodr_error error;
+    if (!case_make(seed, &c))
+        return false;
+    float *floats = rng_one_in(&c.random, 4) ? as_floats(&c) : NULL;
+    reference_volume v = {.type = floats                     ? REFERENCE_FLOAT32
+                                  : c.input.voxel_bytes == 1 ? REFERENCE_UINT8
+                                                             : REFERENCE_UINT16,
+                          .voxels = floats ? floats : c.input.voxels};
+    memcpy(v.dims_vox, c.input.dims_vox, sizeof v.dims_vox);
+    size_t channels = 4 * (size_t)c.view.width_px * (size_t)c.view.height_px;
+    double *none = malloc(channels * sizeof *none), *other = malloc(channels * sizeof *other);
+    bool good = none && other && say(reference_open(options, &v, &r, &error), "open", &error) &&
+                hold_case(&c, r, table, none, other, t);
+    t->cases++;
+    reference_close(r);
+    free(none);
+    free(other);
+    free(floats);
+    case_free(&c);
+    return good;
+}
+
+static int matrix(const reference_options *options, int cases)
+{
+    static double table[4 * COLUMNS];
+    tally t = {0};
+    bool good = true;
+    fill_ramp(table);
+    for (int i = 0; good && i < cases; i++)
+        good = one_case((uint64_t)i + 1, options, table, &t);
+    printf("{\"result\": \"mip_matrix\", \"cases\": %llu, \"frames\": %llu, \"differ\": %llu",
+           (unsigned long long)t.cases, (unsigned long long)t.frames, (unsigned long long)t.differ);
+    for (int accel = 0; accel < REFERENCE_ACCELS; accel++)
+        printf(", \"%s_samples\": %llu", accel_names[accel], (unsigned long long)t.samples[accel]);
+    puts("}");
+    return good && t.differ == 0 ? 0 : 1;
+}
+
+/* ---- the paper's figures ---- */
+
+typedef struct request {
+    const char *name, *path, *type;
+    int32_t from[3], to[3];
+    int side_px, rounds;
+    bool figure;
+} request;
+
+static const struct {
+    const char *name;
+    double azimuth_deg, elevation_deg;
+} views[] = {{"0,0", 0, 0}, {"90,0", 90, 0}, {"0,90", 0, 90}, {"30,30", 30, 30}, {"-60,15", -60, 15}};
+
+/* The volume of a request, enlarged; NULL after a sentence. */
+static uint16_t *read_enlarged(const request *q)
+{
+    const size_t count = (size_t)q->from[0] * (size_t)q->from[1] * (size_t)q->from[2];
+    const size_t bytes = strcmp(q->type, "uint8") == 0 ? 1 : 2;
+    const size_t target = (size_t)q->to[0] * (size_t)q->to[1] * (size_t)q->to[2];
+    unsigned char *stored = malloc((count + 1) * bytes);
+    float *values = malloc(count * sizeof *values), lo = INFINITY, hi = -INFINITY;
+    uint16_t *voxels = malloc(target * sizeof *voxels);
+    FILE *file = fopen(q->path, "rb");
+    bool good = stored && values && voxels && file && fread(stored, bytes, count + 1, file) == count;
+    if (file)
+        fclose(file);
+    for (size_t i = 0; good && i < count; i++) {
+        values[i] = bytes == 1 ? stored[i] : (int16_t)(stored[2 * i] | stored[2 * i + 1] << 8);
+        lo = fminf(lo, values[i]);
+        hi = fmaxf(hi, values[i]);
+    }
+    good = good && hi > lo && enlarge(values, q->from, q->to, lo, hi, voxels);
+    free(stored);
+    free(values);
+    if (good)
+        return voxels;
+    fprintf(stderr, "mip_frames: %s: must be a file of %zu voxels of %s, not all the same\n", q->path, count, q->type);
+    free(voxels);
+    return NULL;
+}
+
+static bool make_job(const request *q, int view, const double *table, reference_march_job *job)
+{
+    static const double spacing[3] = {1, 1, 1};
+    const int32_t wide = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
+    volume geometry = {.spacing = {1, 1, 1}, .axis = {0, 1, 2}, .sign = {1, 1, 1}};
+    camera c = camera_default();
+    host_error reason;
+    vodr_view registers;
+    double depth;
+    memcpy(geometry.dims_vox, q->to, sizeof geometry.dims_vox);
+    c.azimuth_deg = views[view].azimuth_deg;
+    c.elevation_deg = views[view].elevation_deg;
+    c.width_px = c.height_px = q->side_px;
+    c.slices = q->to[2];
+    c.zoom = (double)q->side_px / wide;
+    if (camera_view(&c, &geometry, &registers, &depth, &reason) != HOST_OK) {
+        fprintf(stderr, "mip_frames: %s\n", reason.text);
+        return false;
+    }
+    *job = (reference_march_job){.camera = reference_camera_rays(&registers, spacing, 1),
+                                 .blend = REFERENCE_MIP,
+                                 .filter = REFERENCE_LINEAR,
+                                 .termination = 2,
+                                 .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
+                                 .window_scale = 1 / 65535.0};
+    return true;
+}
+
+/* One way of drawing a view, and how long it took. */
+typedef struct entry {
+    reference_accel accel;
+    int32_t block_vox;
+    uint64_t samples;
+    double ms[MAX_ROUNDS], cpu_ms[MAX_ROUNDS], preprocess_ms;
+} entry;
+
+static void print_entry(const request *q, const char *device, int view, entry *e)
+{
+    const size_t rounds = (size_t)q->rounds;
+    const double ms = stopwatch_median(e->ms, rounds), cpu_ms = stopwatch_median(e->cpu_ms, rounds);
+    printf("{\"result\": \"mip\", \"device\": \"%s\", \"volume\": \"%s\", \"size_vox\": \"%dx%dx%d\", \"size_px\": %d, "
+           "\"view\": \"%s\", \"accel\": \"%s\", \"block_vox\": %d, \"ms\": %.4f, \"least_ms\": %.4f, \"most_ms\": "
+           "%.4f, \"cpu_ms\": %.4f, \"samples\": %llu, \"preprocess_ms\": %.3f}\n",
+           device, q->name, q->to[0], q->to[1], q->to[2], q->side_px, views[view].name, accel_names[e->accel],
+           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, (unsigned long long)e->samples, e->preprocess_ms);
+}
+
+/* Draws the entries in turn, the first of which is none's, and holds all pictures against its. */
+static bool time_entries(const request *q, reference *r, const reference_march_job *job, int view, entry *entries,
+                         int count, double *pictures[2])
+{
+    const size_t bytes = 4 * (size_t)q->side_px * (size_t)q->side_px * sizeof **pictures;
+    bool good = true;
+    for (int round = -1; good && round < q->rounds; round++) /* the first round warms up */
+        for (int i = 0; good && i < count; i++) {
+            entry *e = &entries[i];
+            reference_stats stats;
+            double begin_s = cpu_now_s();
+            good = draw(r, *job, e->accel, e->block_vox, pictures[i > 0], &stats);
+            e->samples = stats.samples;
+            e->preprocess_ms += stats.preprocess_ms;
+            if (round >= 0) {
+                e->ms[round] = stats.draw_ms;
+                e->cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
+            }
+            if (good && i > 0 && memcmp(pictures[0], pictures[1], bytes) != 0) {
+                fprintf(stderr, "mip_frames: %s, view %s, %s: not the picture of none\n", q->name, views[view].name,
+                        accel_names[e->accel]);
+                good = false;
+            }
+        }
+    for (int i = 0; good && i < count; i++)
+        print_entry(q, reference_device_name(r), view, &entries[i]);
+    fflush(stdout);
+    return good;
+}
+
+static bool draw_view(const request *q, reference *r, int view, double *pictures[2])
+{
+    static double table[4 * COLUMNS];
+    reference_march_job job;
+    fill_ramp(table);
+    if (!make_job(q, view, table, &job))
+        return false;
+    int32_t longest = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
+    longest = longest > q->to[2] ? longest : q->to[2];
+    bool good = true;
+    for (int32_t edge = 2; good && edge <= (q->figure ? longest : 2); edge *= 2) {
+        entry entries[MAX_ENTRIES] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 0}};
+        int count = 1;
+        for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+            entries[count++] = (entry){.accel = (reference_accel)accel, .block_vox = edge};
+        for (int i = 0; i < count; i++)
+            entries[i].block_vox = edge;
+        good = time_entries(q, r, &job, view, entries, count, pictures);
+    }
+    return good;
+}
+
+static int figures(const reference_options *options, const request *q)
+{
+    uint16_t *voxels = read_enlarged(q);
+    const size_t channels = 4 * (size_t)q->side_px * (size_t)q->side_px;
+    double *pictures[2] = {malloc(channels * sizeof(double)), malloc(channels * sizeof(double))};
+    reference_volume v = {.type = REFERENCE_UINT16, .voxels = voxels};
+    reference *r = NULL;
+    vodr_error error;
+    memcpy(v.dims_vox, q->to, sizeof v.dims_vox);
+    bool good = voxels && pictures[0] && pictures[1] && say(reference_open(options, &v, &r, &error), "open", &error);
+    for (int view = 0; good && view < (int)(sizeof views / sizeof *views); view++)
+        good = draw_view(q, r, view, pictures);
+    reference_close(r);
+    free(voxels);
+    free(pictures[0]);
+    free(pictures[1]);
+    return good ? 0 : 1;
+}
+
+static bool read_size(const char *text, int32_t size[3])
+{
+    return sscanf(text, "%dx%dx%d", &size[0], &size[1], &size[2]) == 3 && size[0] > 0 && size[1] > 0 && size[2] > 0;
+}
+
+int main(int argc, char **argv)
+{
+    reference_options options = {.device = argc > 1 && strcmp(argv[1], "cuda") == 0 ? REFERENCE_CUDA : REFERENCE_CPU};
+    if (argc == 4 && strcmp(argv[2], "matrix") == 0)
+        return matrix(&options, atoi(argv[3]));
+    if (argc == 10 || argc == 11) {
+        request q = {.name = argv[3],
+                     .path = argv[4],
+                     .type = argv[5],
+                     .side_px = atoi(argv[8]),
+                     .rounds = atoi(argv[9]),
+                     .figure = strcmp(argv[2], "figure") == 0};
+        options.threads = argc == 11 ? atoi(argv[10]) : 0;
+        if (read_size(argv[6], q.from) && read_size(argv[7], q.to) && q.side_px > 0 && q.side_px <= 4096 &&
+            q.rounds > 0 && q.rounds <= MAX_ROUNDS)
+            return figures(&options, &q);
+    }
+    fputs("usage: mip_frames cuda|cpu matrix CASES | table|figure NAME VOLUME.raw uint8|int16 FROM TO SIDE_PX ROUNDS "
+          "[THREADS]\n",
+          stderr);
+    return 2;
+}
