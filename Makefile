@@ -27,10 +27,10 @@ LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
 
 HW       := hw/parameters.txt hw/registers.txt
 MACHINES := $(sort $(wildcard hw/machines/*.txt))
-GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh $(BUILD)/gen/energy_text.c
+GEN      := $(BUILD)/gen/vodr_hw.h $(BUILD)/gen/vodr_hw.c $(BUILD)/gen/vodr_hw.vh $(BUILD)/gen/energy_text.c $(BUILD)/gen/synthesis_text.c
 CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vodr_hw.o
 HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
-            $(BUILD)/gen/energy_text.o
+            $(BUILD)/gen/energy_text.o $(BUILD)/gen/synthesis_text.o
 RTL      := $(patsubst %.c,$(BUILD)/%.o,$(wildcard rtl/*.c))
 VECTORS  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard vectors/*.c))
 REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
@@ -188,6 +188,10 @@ $(BUILD)/gen/energy_text.c: $(BUILD)/generate hw/energy.txt
 	@mkdir -p $(@D)
 	$(BUILD)/generate c-text hw_energy_text hw/energy.txt > $@.tmp && mv $@.tmp $@
 
+$(BUILD)/gen/synthesis_text.c: $(BUILD)/generate rtl/synthesis.txt
+	@mkdir -p $(@D)
+	$(BUILD)/generate c-text rtl_synthesis_text rtl/synthesis.txt > $@.tmp && mv $@.tmp $@
+
 $(BUILD)/gen/%.o: $(BUILD)/gen/%.c
 	$(COMPILE) -c -o $@ $<
 
@@ -223,7 +227,7 @@ $(BUILD)/libvectors.a: $(VECTORS)
 
 # Where co-simulation finds what it builds libraries of, and keeps them: builds of one tree share theirs.
 WHERE := -DVODR_ROOT='"$(CURDIR)"' -DVODR_BUILD='"$(abspath $(if $(filter build/%,$(BUILD)),build,$(BUILD)))"'
-$(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cosim.o $(BUILD)/tests/test_pairwise.o: STRICT += $(WHERE)
+$(BUILD)/host/cosim_options.o $(BUILD)/bench/cosim_rate.o $(BUILD)/tests/test_cells.o $(BUILD)/tests/test_cosim.o $(BUILD)/tests/test_pairwise.o: STRICT += $(WHERE)
 
 $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@

@@ -166,14 +166,27 @@ static void count_energy(costs *c, const vodr_machine *m, const vodr_view *v, co
 }
 
 costs costs_of(const vodr_machine *machine, const vodr_view *view, const vodr_counters *counters,
-               const energy_table *energy)
+               const cost_tables *tables)
 {
     costs c = {.fb_bytes = counters->fb_read_bytes + counters->fb_write_bytes,
                .texture_bytes = counters->texture_load_bytes};
     count_bits(&c, machine, view);
-    count_energy(&c, machine, view, counters, energy); /* an access costs what one pipeline's memory does */
+    count_energy(&c, machine, view, counters, &tables->energy); /* an access costs what one pipeline's memory does */
     multiply_bits(&c, (uint64_t)machine->pipelines);
+    c.has_cells = cells_of(&tables->cells, machine, &c.cells);
     return c;
+}
+
+host_status cost_tables_open(const char *energy, const char *cells, cost_tables *tables, host_error *error)
+{
+    *tables = (cost_tables){0};
+    host_status status = energy_open(energy, &tables->energy, error);
+    return status == HOST_OK ? cell_table_open(cells, &tables->cells, error) : status;
+}
+
+void cost_tables_free(cost_tables *tables)
+{
+    cell_table_free(&tables->cells);
 }
 
 uint64_t costs_offchip_bytes(const costs *c)
@@ -196,15 +209,22 @@ static json_int_t whole_pj(double pj)
     return (json_int_t)llround(pj);
 }
 
+static json_t *known(const costs *c, int64_t count)
+{
+    return c->has_cells ? json_integer((json_int_t)count) : json_null();
+}
+
 json_t *costs_json(const costs *c)
 {
-    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "fb_bytes",
-                     (json_int_t)c->fb_bytes, "texture_bytes", (json_int_t)c->texture_bytes, "offchip_bytes",
-                     (json_int_t)costs_offchip_bytes(c), "energy_pj", whole_pj(costs_energy_pj(c)), "offchip_pj",
-                     whole_pj(c->offchip_pj), "cache_pj", whole_pj(c->cache_pj), "texture_pj", whole_pj(c->texture_pj),
-                     "table_pj", whole_pj(c->table_pj), "arithmetic_pj", whole_pj(c->arithmetic_pj), "onchip_bits",
-                     (json_int_t)costs_onchip_bits(c), "cache_data_bits", (json_int_t)c->cache_data_bits,
-                     "cache_tag_bits", (json_int_t)c->cache_tag_bits, "texture_bits", (json_int_t)c->texture_bits,
-                     "table_bits", (json_int_t)c->table_bits, "fifo_bits", (json_int_t)c->fifo_bits, "touch_bits",
-                     (json_int_t)c->touch_bits);
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o}",
+                     "fb_bytes", (json_int_t)c->fb_bytes, "texture_bytes", (json_int_t)c->texture_bytes,
+                     "offchip_bytes", (json_int_t)costs_offchip_bytes(c), "energy_pj", whole_pj(costs_energy_pj(c)),
+                     "offchip_pj", whole_pj(c->offchip_pj), "cache_pj", whole_pj(c->cache_pj), "texture_pj",
+                     whole_pj(c->texture_pj), "table_pj", whole_pj(c->table_pj), "arithmetic_pj",
+                     whole_pj(c->arithmetic_pj), "onchip_bits", (json_int_t)costs_onchip_bits(c), "cache_data_bits",
+                     (json_int_t)c->cache_data_bits, "cache_tag_bits", (json_int_t)c->cache_tag_bits, "texture_bits",
+                     (json_int_t)c->texture_bits, "table_bits", (json_int_t)c->table_bits, "fifo_bits",
+                     (json_int_t)c->fifo_bits, "touch_bits", (json_int_t)c->touch_bits, "cells",
+                     known(c, c->cells.cells), "word_bits", known(c, c->cells.word_bits), "flip_flops",
+                     known(c, c->cells.flip_flops));
 }

@@ -29,12 +29,16 @@ static host_status parse_line(char *line, const char *where, int number, bool *s
                               host_error *error)
 {
     char *bar = strchr(line, '|');
-    if (!bar)
+    if (!bar) {
+        text_make_printable(line);
         return host_fail(error, HOST_BAD_INPUT, "%s:%d: '%.64s' is not of the form name | pJ", where, number, line);
+    }
     *bar = '\0';
     char *name = trim(line), *value = bar + 1;
     value[strcspn(value, "|")] = '\0';
     value = trim(value);
+    text_make_printable(name);
+    text_make_printable(value);
     int term = 0;
     while (term < ENERGY_TERMS && strcmp(names[term], name) != 0)
         term++;

@@ -28,7 +28,7 @@ static host_status fill(scene *s, const char *path, const view_options *o, host_
 {
     host_status status = view_options_machine(o, &s->machine, error);
     if (status == HOST_OK)
-        status = energy_open(o->energy, &s->energy, error);
+        status = cost_tables_open(o->energy, o->cells, &s->tables, error);
     if (status == HOST_OK)
         status = volume_open(path, &o->volume, &s->volume, error);
     if (status != HOST_OK)
@@ -79,6 +79,7 @@ host_status scene_open(const char *path, const view_options *options, scene *s, 
 void scene_close(scene *s)
 {
     free(s->entries);
+    cost_tables_free(&s->tables);
     transfer_close(&s->transfer);
     volume_close(&s->volume);
 }

@@ -2,7 +2,7 @@
 #ifndef HOST_SCENE_H
 #define HOST_SCENE_H
 
-#include "energy.h"
+#include "costs.h"
 #include "host.h"
 #include "transfer.h"
 #include "view_options.h"
@@ -22,7 +22,7 @@ typedef struct scene {
     double depth_vox; /* distance between slices in finest voxels */
     vodr_table table;
     vodr_rgba *entries; /* of table, owned */
-    energy_table energy;
+    cost_tables tables;
 } scene;
 
 /* Opens the volume and computes all of *s, to be closed on success. */

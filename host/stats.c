@@ -77,7 +77,7 @@ json_t *stats_json(const scene *s, const view_options *options, const result *r)
     char bottleneck[192];
     if (cycles)
         cycle_stats_bottleneck(cycles, bottleneck, sizeof bottleneck);
-    const costs c = costs_of(&s->machine, &s->view, &r->counters, &s->energy);
+    const costs c = costs_of(&s->machine, &s->view, &r->counters, &s->tables);
     json_t *rest = json_pack(
         "{s:i, s:o, s:o, s:s?, s:o, s:s, s:i, s:i, s:f, s:f}", "slices", (int)s->view.slices, "cycles",
         cycles ? cycle_stats_blocks(cycles) : json_null(), "stalls", cycles ? cycle_stats_stalls(cycles) : json_null(),

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "digest.h"
 #include "json.h"
 #include "transfer_builtin.h"
 
@@ -69,6 +70,18 @@ static json_t *transfers(const sweep_stage *s, host_error *error)
     return array;
 }
 
+/* The tables that cells are looked up in; NULL after an error. */
+static json_t *cells(const sweep_stage *s, host_error *error)
+{
+    char own[DIGEST_CHARS], file[DIGEST_CHARS];
+    if (digest_bytes(rtl_synthesis_text, strlen(rtl_synthesis_text), own, error) != HOST_OK ||
+        (s->fixed->cells && digest_file(s->fixed->cells, file, error) != HOST_OK))
+        return NULL;
+    return json_pack("{s:s, s:o, s:s?}", "synthesis_sha256", own, "file",
+                     s->fixed->cells ? json_text(s->fixed->cells) : json_null(), "file_sha256",
+                     s->fixed->cells ? file : NULL);
+}
+
 /* An object as lines of JSON behind '#', one a key. */
 static char *as_comment(json_t *root)
 {
@@ -98,11 +111,11 @@ static char *as_comment(json_t *root)
 host_status sweep_head(const sweep_stage *s, const char *repeats, char **text, host_error *error)
 {
     host_error reason = {""};
-    json_t *root =
-        json_pack("{s:s, s:s, s:o, s:o, s:o, s:I, s:b, s:o, s:o, s:o}", "schema", "vodr-sweep-1", "version",
-                  VODR_VERSION, "command", json_text(repeats), "volumes", volumes(s), "axes", axes(s->plan), "points",
-                  (json_int_t)s->plan->points, "cycles", (int)s->fixed->cycles, "machines", machines(s),
-                  "transfer_functions", transfers(s, &reason), "energy_pj", energy_json(&s->energy));
+    json_t *root = json_pack("{s:s, s:s, s:o, s:o, s:o, s:I, s:b, s:o, s:o, s:o, s:o}", "schema", "vodr-sweep-1",
+                             "version", VODR_VERSION, "command", json_text(repeats), "volumes", volumes(s), "axes",
+                             axes(s->plan), "points", (json_int_t)s->plan->points, "cycles", (int)s->fixed->cycles,
+                             "machines", machines(s), "transfer_functions", transfers(s, &reason), "energy_pj",
+                             energy_json(&s->tables.energy), "cells", cells(s, &reason));
     *text = root ? as_comment(root) : NULL;
     json_decref(root);
     if (*text)

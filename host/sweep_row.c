@@ -17,7 +17,7 @@ static json_t *counted(const sweep_stage *s, const sweep_sample *sample)
 {
     json_t *all = json_pack("{s:i, s:i, s:i}", "width_px", (int)sample->view.width_px, "height_px",
                             (int)sample->view.height_px, "slices", (int)sample->view.slices);
-    const costs c = costs_of(&sample->machine, &sample->view, &sample->counters, &s->energy);
+    const costs c = costs_of(&sample->machine, &sample->view, &sample->counters, &s->tables);
     json_t *parts[] = {stats_counters(&sample->counters), costs_json(&c), NULL};
     const vodr_cycles *cycles = &sample->counters.cycles;
     char bottleneck[192];

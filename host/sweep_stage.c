@@ -87,7 +87,7 @@ host_status sweep_stage_open(sweep_stage *s, const sweep_plan *plan, const view_
                        .transfers = calloc(count_of(plan, "tf"), sizeof *s->transfers)};
     if (!s->machines || !s->transfers || pthread_mutex_init(&s->lock, NULL) != 0)
         return no_memory(error);
-    host_status status = energy_open(fixed->energy, &s->energy, error);
+    host_status status = cost_tables_open(fixed->energy, fixed->cells, &s->tables, error);
     if (status == HOST_OK)
         status = open_each(s, "machine", fixed->machine, open_machine, error);
     if (status == HOST_OK)
@@ -103,6 +103,7 @@ void sweep_stage_close(sweep_stage *s)
     }
     free(s->transfers);
     free(s->machines);
+    cost_tables_free(&s->tables);
     stage_volumes_free(s);
 }
 

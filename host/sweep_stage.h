@@ -5,8 +5,8 @@
 
 #include <pthread.h>
 
+#include "costs.h"
 #include "digest.h"
-#include "energy.h"
 #include "sweep_plan.h"
 #include "transfer.h"
 
@@ -42,7 +42,7 @@ typedef struct sweep_stage {
     const sweep_plan *plan;
     const view_options *fixed;
     const char *volume; /* where volumes do not vary */
-    energy_table energy;
+    cost_tables tables;
     stage_machine *machines;
     size_t machine_count;
     stage_transfer *transfers;

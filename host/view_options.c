@@ -167,6 +167,13 @@ static host_status set_energy(void *target, const option *o, const char *value, 
     return HOST_OK;
 }
 
+static host_status set_cells(void *target, const option *o, const char *value, host_error *error)
+{
+    (void)o, (void)error;
+    ((view_options *)target)->cells = value;
+    return HOST_OK;
+}
+
 static host_status set_background(void *target, const option *o, const char *value, host_error *error)
 {
     uint8_t *background = ((view_options *)target)->style.background;
@@ -229,6 +236,9 @@ static const option machine_rows[] = {
     {"energy", 0, "FILE", false, set_energy,
      "pJ of operations, for the costs among the statistics\n"
      "(as hw/energy.txt)"},
+    {"cells", 0, "FILE", false, set_cells,
+     "further rows of scripts/synth-row, for the costs\n"
+     "(beside rtl/synthesis.txt)"},
 };
 const option_table option_machine = {"Machine:", machine_rows, COUNT(machine_rows)};
 
@@ -283,7 +293,7 @@ host_status view_options_named_machine(const char *name, vodr_machine *machine, 
 
 host_status view_options_output(const view_options *v, const char *input, const char *path, host_error *error)
 {
-    const char *const inputs[] = {input, v->transfer, v->machine, v->energy};
+    const char *const inputs[] = {input, v->transfer, v->machine, v->energy, v->cells};
     for (size_t i = 0; i < COUNT(inputs); i++) {
         host_status status = output_spare(path, inputs[i], error);
         if (status != HOST_OK)

@@ -26,6 +26,7 @@ typedef struct view_options {
     machine_override *overrides;
     size_t override_count;
     const char *energy; /* a file; NULL: hw/energy.txt */
+    const char *cells;  /* a file, beside rtl/synthesis.txt; NULL: none */
     int32_t threads;    /* 0 = all cores */
     vodr_path path;
     vodr_simd simd;

@@ -142,10 +142,14 @@ static int64_t texture_bytes(const vodr_machine *m)
 /* Memories whose size a frame decides come in few sizes, so that few libraries are needed. */
 enum { LEAST_BITS = 4096 };
 
-bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
+static int64_t memory_bits(int64_t wanted)
 {
-    const vodr_machine *m = &r->machine;
-    int64_t bricks = (int64_t)r->bricks[0] * r->bricks[1] * r->bricks[2];
+    return power_of_two(wanted > LEAST_BITS ? wanted : LEAST_BITS);
+}
+
+/* A parameter of a frame of so many bricks and lines. */
+static bool parameter(const vodr_machine *m, int64_t bricks, int64_t frame_lines, const char *name, int64_t *value)
+{
     int64_t beat = m->mem_bus_bytes < m->texture_burst_bytes ? m->mem_bus_bytes : m->texture_burst_bytes;
     const struct {
         const char *name;
@@ -157,9 +161,8 @@ bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
         {"BEAT_BYTES", beat},
         {"TEXTURE_BYTES", texture_bytes(m)},
         {"FRAGMENT_ROOM", m->fragment_fifo + (m->traversal == VODR_TRAVERSAL_WHOLE ? m->mem_latency_cycles : 0)},
-        {"EMPTY_BRICKS", m->skip_empty ? power_of_two(bricks > LEAST_BITS ? bricks : LEAST_BITS) : 1},
-        {"FRAME_LINES",
-         m->clear_on_first_touch ? power_of_two(r->frame_lines > LEAST_BITS ? r->frame_lines : LEAST_BITS) : 1},
+        {"EMPTY_BRICKS", m->skip_empty ? memory_bits(bricks) : 1},
+        {"FRAME_LINES", m->clear_on_first_touch ? memory_bits(frame_lines) : 1},
     };
     for (size_t i = 0; i < sizeof derived / sizeof *derived; i++)
         if (strcmp(derived[i].name, name) == 0) {
@@ -176,6 +179,17 @@ bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
         return false;
     *value = narrow;
     return true;
+}
+
+bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value)
+{
+    const int64_t bricks = (int64_t)r->bricks[0] * r->bricks[1] * r->bricks[2];
+    return parameter(&r->machine, bricks, r->frame_lines, name, value);
+}
+
+bool rtl_machine_parameter(const vodr_machine *machine, const char *name, int64_t *value)
+{
+    return parameter(machine, 0, 0, name, value);
 }
 
 /* ---- tables ---- */

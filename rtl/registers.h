@@ -31,4 +31,7 @@ bool rtl_register(const rtl_registers *r, const char *name, uint64_t *value);
 /* A parameter's value; false when there is none of this name. */
 bool rtl_parameter(const rtl_registers *r, const char *name, int64_t *value);
 
+/* The same for no frame in particular: of memories whose size a frame decides, the smallest that is built. */
+bool rtl_machine_parameter(const vodr_machine *machine, const char *name, int64_t *value);
+
 #endif

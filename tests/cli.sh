@@ -64,6 +64,12 @@ done
     good "--energy" "$vodr" render $raw --stats free.json --energy free.txt
     expect "stats: costs" '"offchip_pj": [1-9]' energy.json
     expect "stats: costs by another table" '"offchip_pj": 0,' free.json
+    expect "stats: cells" '"cells": [1-9]' energy.json
+    good "no row of synthesis" "$vodr" render $raw --stats rowless.json --set ways=16
+    expect "stats: cells are not known" '"cells": null,' rowless.json
+    printf 'pixel_cache WAYS=16 | 7 | 8\n' >rows.txt
+    good "--cells" "$vodr" render $raw --stats rows.json --set ways=16 --cells rows.txt
+    expect "stats: cells by a further row" '"cells": [1-9]' rows.json
     good "--repeat" "$vodr" render $raw --repeat 3 --stats g.json
     good "options may end with --" "$vodr" render --dims 16x8x8 -- v.raw
     good "outputs to devices" "$vodr" render $raw -o /dev/null --raw /dev/null
@@ -265,6 +271,8 @@ refuse path slow Fast ""
     bad 2 "'none.txt'" "$vodr" render $raw -o no.png --energy none.txt
     printf 'add | 0.03\ndivide | 2\n' >odd.txt
     bad 2 "odd.txt:2: there is no energy 'divide'" "$vodr" render $raw -o no.png --energy odd.txt
+    printf 'pixel_cache | 7 | 8\npixel_cache SIZE=1 | 7 | 8\n' >odd_rows.txt
+    bad 2 "odd_rows.txt:2: pixel_cache has no parameter 'SIZE'" "$vodr" render $raw -o no.png --cells odd_rows.txt
     printf '0 0 0 0 0\n1 0 0 2 0\n' >tf2.txt
     bad 2 "tf2.txt:2: b is '2'" "$vodr" render $raw -o no.png --tf tf2.txt
     bad 2 "both name 'no.png'" "$vodr" render $raw -o no.png --raw no.png

@@ -223,6 +223,11 @@ kills=0
     bad 2 "'z.csv' is there and is not of this sweep" "$vodr" sweep z.raw --dims 16x16x16 --over ways=1,2 -o z.csv
     printf 'add | -1\n' >bad.energy
     bad 2 "bad.energy:1: add is '-1'" "$vodr" sweep $raw --over ways=1,2 -o new.csv --energy bad.energy
+    printf 'pixel_cache WAYS=16 | 7 | 8\n' >rows.txt
+    "$vodr" sweep $raw --over ways=4,16,32 --cells rows.txt -o rows.csv >/dev/null
+    verdict "cells of machines that have rows" "$([ "$(column cells rows.csv | sed 's/[0-9][0-9]*/n/' | paste -sd,)" = n,n, ] || column cells rows.csv | paste -sd,)"
+    printf 'pixel_cache WAYS=16 | 9 | 8\n' >rows.txt
+    bad 2 "'rows.csv' is there and is not of this sweep" "$vodr" sweep $raw --over ways=4,16,32 --cells rows.txt -o rows.csv
     bad 3 "no/x.csv" "$vodr" sweep $raw --over ways=1,2 -o no/x.csv
     bad 3 "regular file" "$vodr" sweep $raw --over ways=1,2 -o /dev/full
     # A limit on the size of files stands in for a full disk: what was written is whole, and the sweep goes on later.

@@ -170,12 +170,12 @@ static void test_claims(void **state)
 
 /* ---- costs ---- */
 
-static energy_table table_of(const char *text)
+static cost_tables tables_of(const char *energy)
 {
-    energy_table e;
+    cost_tables tables = {0};
     host_error error;
-    assert_int_equal(energy_parse(text, "test", &e, &error), HOST_OK);
-    return e;
+    assert_int_equal(energy_parse(energy, "test", &tables.energy, &error), HOST_OK);
+    return tables;
 }
 
 static void test_bits(void **state)
@@ -183,7 +183,7 @@ static void test_bits(void **state)
     (void)state;
     const vodr_view v = {.width_px = 100, .height_px = 64, .slices = 1};
     const vodr_counters none = {0};
-    const energy_table e = table_of("");
+    const cost_tables e = tables_of("");
     vodr_machine m = unit_machine("line_px=16x1 cache_bytes=4096 ways=4 texture_memory_bytes=1000 fragment_fifo=32");
     costs c = costs_of(&m, &v, &none, &e);
     assert_int_equal(c.cache_data_bits, 32768);
@@ -226,7 +226,7 @@ static void test_energy(void **state)
                              .fb_write_bytes = 320,
                              .texture_load_bytes = 800};
     vodr_machine m = unit_machine("cache_bytes=8192 texture_memory_bytes=32768 ways=4 line_px=16x1");
-    energy_table e = table_of("# only memory\nadd|0\n multiply | 0\nsram_word | 8 | x\ndram_byte|2\n");
+    cost_tables e = tables_of("# only memory\nadd|0\n multiply | 0\nsram_word | 8 | x\ndram_byte|2\n");
     costs c = costs_of(&m, &v, &n, &e);
     assert_int_equal(costs_offchip_bytes(&c), 1760);
     assert_true(c.offchip_pj == 3520);
@@ -238,17 +238,17 @@ static void test_energy(void **state)
     m.pipelines = 4; /* as many accesses, of memories as large */
     costs four = costs_of(&m, &v, &n, &e);
     assert_true(costs_energy_pj(&four) == costs_energy_pj(&c) && four.texture_bits == 4 * c.texture_bits);
-    e = table_of("add | 8\nmultiply | 0\n");
+    e = tables_of("add | 8\nmultiply | 0\n");
     c = costs_of(&m, &v, &n, &e);
     /* An addition of n bits is n pJ: 3 positions of 43, 7 interpolations of 2*12; blends of 4*(2*16 + 8). */
     assert_true(c.arithmetic_pj == 100 * (129 + 168) + 80 * 160);
-    e = table_of("add | 0\nmultiply | 64\n");
+    e = tables_of("add | 0\nmultiply | 64\n");
     c = costs_of(&m, &v, &n, &e);
     assert_true(c.arithmetic_pj == 100 * 7 * 12 * 8 + 80 * 4 * 64);
     static const char *const wrong[] = {"add", "sum | 1", "add | x", "add | -1", "add | 1\nadd | 2"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         host_error error;
-        assert_int_equal(energy_parse(wrong[i], "test", &e, &error), HOST_BAD_INPUT);
+        assert_int_equal(energy_parse(wrong[i], "test", &e.energy, &error), HOST_BAD_INPUT);
         assert_non_null(strstr(error.text, i == 4 ? "test:2" : "test:1"));
     }
 }
