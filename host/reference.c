@@ -121,7 +121,7 @@ static host_status draw_and_write(const char *path, command_options *options, ho
     if (status == HOST_OK)
         status = output_set_check(&options->outputs, &options->view, path, error);
     if (status == HOST_OK)
-        status = scene_open_stored(path, &options->view, &s, error);
+        status = scene_open_stored(path, &options->view, !options->wish.choice.fixed, &s, error);
     if (status != HOST_OK)
         return status;
     status = draw_scene(&s, options, &r, error);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Fine enough for the 4,096 entries of a machine's table of 12-bit densities to be among the points sampled. */
-enum { TABLE_COLUMNS = 4096 };
+enum { TABLE_COLUMNS = 4096, TABLE_ROWS = 65 };
 
 /* Stored voxels as reference/ reads them; a value is stored*scale + offset. */
 typedef struct stored {
@@ -80,18 +80,36 @@ static reference_camera camera_of(const scene *s, const reference_choice *c)
     return slices;
 }
 
+/* The scene's transfer function as a table of the job, for samples so many finest voxels long. */
+static host_status fill_table(reference_scene *r, const scene *s, double depth_vox, host_error *error)
+{
+    const transfer *t = &s->transfer;
+    const bool mip = s->machine.blend == VODR_BLEND_MIP;
+    reference_table *table = &r->job.table;
+    table->columns = TABLE_COLUMNS;
+    table->rows = t->row_count > 1 ? TABLE_ROWS : 1;
+    if (t->rows && mip)
+        return host_fail(error, HOST_BAD_INPUT,
+                         "--tf: '%.512s' is of value and gradient magnitude, which does not go with blend=mip: it goes "
+                         "with over and under",
+                         t->name);
+    table->rgba = r->table = malloc(4 * (size_t)table->rows * TABLE_COLUMNS * sizeof *r->table);
+    if (!r->table)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for the transfer-function table");
+    if (table->rows > 1)
+        return transfer_sample_rows(t, s->window_lo, s->window_hi, TABLE_COLUMNS, TABLE_ROWS, depth_vox, r->table,
+                                    &table->gradient_most, error);
+    transfer_sample(t, s->window_lo, s->window_hi, TABLE_COLUMNS, mip ? 1 : depth_vox, mip, r->table);
+    return HOST_OK;
+}
+
 static host_status fill_job(reference_scene *r, const scene *s, const reference_choice *c, const stored *v,
                             host_error *error)
 {
     const bool mip = s->machine.blend == VODR_BLEND_MIP;
     const double width = s->window_hi - s->window_lo;
-    const double depth_vox = c->method == REFERENCE_RAYCAST ? c->step_vox : s->depth_vox;
     if (!isfinite(width))
         return host_fail(error, HOST_BAD_INPUT, "window %g:%g: must be finite", s->window_lo, s->window_hi);
-    r->table = malloc(4 * TABLE_COLUMNS * sizeof *r->table);
-    if (!r->table)
-        return host_fail(error, HOST_ENVIRONMENT, "no memory for the transfer-function table");
-    transfer_sample(&s->transfer, s->window_lo, s->window_hi, TABLE_COLUMNS, mip ? 1 : depth_vox, mip, r->table);
     r->job = (reference_march_job){
         .camera = camera_of(s, c),
         .numbers = c->numbers,
@@ -101,11 +119,10 @@ static host_status fill_job(reference_scene *r, const scene *s, const reference_
         .accel = c->accel,
         .block_vox = c->block_vox,
         .termination = c->termination < 1 ? c->termination : 2,
-        .table = {.columns = TABLE_COLUMNS, .rows = 1, .rgba = r->table},
         .window_scale = width > 0 ? v->scale / width : 0,
         .window_offset = width > 0 ? (v->offset - s->window_lo) / width : 0,
     };
-    return HOST_OK;
+    return fill_table(r, s, c->method == REFERENCE_RAYCAST ? c->step_vox : s->depth_vox, error);
 }
 
 static host_status open_fixed(scene *s, reference_volume *v, host_error *error)

@@ -24,7 +24,7 @@ host_status scene_table(const vodr_machine *m, const transfer *t, double lo, dou
     return HOST_OK;
 }
 
-static host_status fill(scene *s, const char *path, const view_options *o, host_error *error)
+static host_status fill(scene *s, const char *path, const view_options *o, bool rows, host_error *error)
 {
     host_status status = view_options_machine(o, &s->machine, error);
     if (status == HOST_OK)
@@ -34,17 +34,17 @@ static host_status fill(scene *s, const char *path, const view_options *o, host_
     if (status != HOST_OK)
         return status;
     bool ct = volume_is_ct(&s->volume);
-    status = transfer_open(o->transfer, ct, &s->transfer, error);
+    status = (rows ? transfer_open_rows : transfer_open)(o->transfer, ct, &s->transfer, error);
     if (status != HOST_OK)
         return status;
     scene_window(o, &s->transfer, ct, s->volume.min, s->volume.max, &s->window_lo, &s->window_hi);
     return camera_view(&s->camera, &s->volume, &s->view, &s->depth_vox, error);
 }
 
-host_status scene_open_stored(const char *path, const view_options *options, scene *s, host_error *error)
+host_status scene_open_stored(const char *path, const view_options *options, bool rows, scene *s, host_error *error)
 {
     *s = (scene){.machine_name = options->machine, .camera = options->camera};
-    host_status status = fill(s, path, options, error);
+    host_status status = fill(s, path, options, rows, error);
     if (status != HOST_OK) {
         scene_close(s);
         return status;
@@ -67,7 +67,7 @@ host_status scene_quantise(scene *s, host_error *error)
 
 host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error)
 {
-    host_status status = scene_open_stored(path, options, s, error);
+    host_status status = scene_open_stored(path, options, false, s, error);
     if (status != HOST_OK)
         return status;
     status = scene_quantise(s, error);

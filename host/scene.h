@@ -29,10 +29,11 @@ typedef struct scene {
 host_status scene_open(const char *path, const view_options *options, scene *s, host_error *error);
 void scene_close(scene *s);
 
-/* The same but for densities and table: the volume keeps the voxels of its file. */
-host_status scene_open_stored(const char *path, const view_options *options, scene *s, host_error *error);
+/* The same but for densities and table: the volume keeps the voxels of its file. With `rows` the transfer function may
+ * be one of value and gradient magnitude too. */
+host_status scene_open_stored(const char *path, const view_options *options, bool rows, scene *s, host_error *error);
 
-/* Makes those of a scene opened by scene_open_stored(). */
+/* Makes those of a scene opened by scene_open_stored() without rows. */
 host_status scene_quantise(scene *s, host_error *error);
 
 /* The first lines of a summary: the volume, its window and transfer function. */

@@ -136,6 +136,50 @@ void transfer_sample(const transfer *t, double lo, double hi, int count, double 
         sample_at(t, lo, hi, i, count - 1, depth, largest, rgba + 4 * (size_t)i);
 }
 
+/* A row as a function of values alone; it shares the points. */
+static transfer row_of(const transfer *t, const transfer_row *row)
+{
+    transfer one = *t;
+    one.points += row->first;
+    one.count = row->count;
+    one.rows = NULL;
+    one.row_count = 0;
+    return one;
+}
+
+/* Adds `share` of a row's samples. */
+static void add_row(const transfer *t, size_t i, double lo, double hi, int count, double depth, double share,
+                    double *scratch, double *rgba)
+{
+    const transfer row = row_of(t, &t->rows[i]);
+    transfer_sample(&row, lo, hi, count, depth, false, scratch);
+    for (size_t e = 0; e < 4 * (size_t)count; e++)
+        rgba[e] += share * scratch[e];
+}
+
+host_status transfer_sample_rows(const transfer *t, double lo, double hi, int count, int row_count, double depth,
+                                 double *rgba, double *most, host_error *error)
+{
+    const double last = t->rows[t->row_count - 1].gradient;
+    const size_t entries = 4 * (size_t)count;
+    double *scratch = malloc(entries * sizeof *scratch);
+    if (!scratch)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for the transfer-function table");
+    memset(rgba, 0, (size_t)row_count * entries * sizeof *rgba);
+    for (int j = 0; j < row_count; j++, rgba += entries) {
+        const double gradient = last * ((double)j / (row_count - 1));
+        size_t above = count_below(&t->rows[0].gradient, sizeof *t->rows, t->row_count, gradient);
+        const double *from = above ? &t->rows[above - 1].gradient : NULL;
+        const double share = from ? share_of(gradient, *from, t->rows[above].gradient) : 1;
+        add_row(t, above, lo, hi, count, depth, share, scratch, rgba);
+        if (share < 1)
+            add_row(t, above - 1, lo, hi, count, depth, 1 - share, scratch, rgba);
+    }
+    free(scratch);
+    *most = t->normalized || hi <= lo ? last : last / (hi - lo);
+    return HOST_OK;
+}
+
 /* A colour map in JSON is an object or a list; no line of the text form begins like one. */
 static bool is_json(const char *text)
 {
@@ -157,16 +201,29 @@ static host_status open_file(const char *path, transfer *t, host_error *error)
     return status;
 }
 
-host_status transfer_open(const char *name_or_path, bool ct, transfer *t, host_error *error)
+host_status transfer_open_rows(const char *name_or_path, bool ct, transfer *t, host_error *error)
 {
     *t = (transfer){.name = name_or_path};
     const transfer_builtin *builtin = transfer_builtin_find(name_or_path);
     return builtin ? transfer_builtin_open(builtin, ct, t, error) : open_file(name_or_path, t, error);
 }
 
+host_status transfer_open(const char *name_or_path, bool ct, transfer *t, host_error *error)
+{
+    host_status status = transfer_open_rows(name_or_path, ct, t, error);
+    if (status != HOST_OK || !t->rows)
+        return status;
+    transfer_close(t);
+    return host_fail(error, HOST_BAD_INPUT,
+                     "--tf: '%.512s' is of value and gradient magnitude, the machine's tables of values alone: it goes "
+                     "with `vodr reference --numbers float`, double and texture",
+                     name_or_path);
+}
+
 void transfer_close(transfer *t)
 {
     free(t->points);
     free(t->opacities);
+    free(t->rows);
     *t = (transfer){0};
 }

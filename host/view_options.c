@@ -209,7 +209,8 @@ static const option view_rows[] = {
     {"tf", 0, "NAME|FILE", false, set_transfer,
      "transfer function: ramp, bone, skin-bone, vessels, mri,\n"
      "or a file: lines `value r g b a`, or a colour map that\n"
-     "ParaView exported (ramp)"},
+     "ParaView exported (ramp); reference: also one of value\n"
+     "and gradient magnitude"},
     {"window", 0, "LO:HI", false, set_window,
      "values that become the least and the greatest density\n"
      "(the data's range; for CT in Hounsfield units the\n"

@@ -159,6 +159,22 @@ expect "machine list has paper-32" '^paper-32 ' ../out
         --shading phong --termination 0.9 --raw t.rgba
     good "reference, texture, mip" "$vodr" reference $raw --numbers texture --blend mip --raw t.rgba
     rm -f m.rgba n.rgba r.png r.rgba r.json t.rgba
+    printf '0 0 0 0 0\n255 1 0.5 0 0.4\n' >values.txt
+    { echo 'gradient 0'; cat values.txt; echo 'gradient 20'; cat values.txt; } >same.txt
+    { echo 'gradient 10'; sed 's/[^ ]*$/0/' values.txt; echo 'gradient 40'; cat values.txt; } >edges.txt
+    for how in '--method raycast' '--method slices --shading phong' '--method raycast --numbers double'; do
+        for tf in values same edges; do
+            good "reference $how --tf $tf.txt" "$vodr" reference $raw --view 20,10 --tf $tf.txt $how --raw $tf.rgba
+        done
+        same "rows that are alike are a function of values" values.rgba same.rgba
+        verdict "rows that are not are none" "$(! cmp -s values.rgba edges.rgba || echo "the frames are the same")"
+        good "reference $how, nothing skipped" "$vodr" reference $raw --view 20,10 --tf edges.txt $how --accel none --raw t.rgba
+        same "changes nothing" edges.rgba t.rgba
+    done
+    bad 2 "'edges.txt' is of value and gradient magnitude, the machine's tables" "$vodr" render $raw -o no.png --tf edges.txt
+    bad 2 "'edges.txt' is of value and gradient magnitude, the machine's tables" "$vodr" reference $raw -o no.png --tf edges.txt --numbers fixed
+    bad 2 "'edges.txt' is of value and gradient magnitude, the machine's tables" "$vodr" sweep $raw -o no.csv --over tf=edges.txt
+    bad 2 "does not go with blend=mip" "$vodr" reference $raw -o no.png --tf edges.txt --blend mip
     bad 2 "--device 'gpu': must be cpu or cuda" "$vodr" reference $raw -o no.png --device gpu
     bad 2 "--method 'rays': must be slices or raycast" "$vodr" reference $raw -o no.png --method rays
     bad 2 "--numbers 'half': must be fixed, float, double or texture" "$vodr" reference $raw -o no.png --numbers half

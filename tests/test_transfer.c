@@ -13,15 +13,21 @@
 
 #include "transfer.h"
 
-/* Opens `text` as a transfer-function file. */
-static host_status open_text(const char *text, transfer *t, host_error *error)
+/* A new file of that text; `path` is a template of mkstemp(). */
+static void write_text(const char *text, char *path)
 {
-    char path[] = "/tmp/vodr-transfer-XXXXXX";
     int descriptor = mkstemp(path);
     assert_true(descriptor >= 0);
     FILE *file = fdopen(descriptor, "w");
     fputs(text, file);
     fclose(file);
+}
+
+/* Opens `text` as a transfer-function file. */
+static host_status open_text(const char *text, transfer *t, host_error *error)
+{
+    char path[] = "/tmp/vodr-transfer-XXXXXX";
+    write_text(text, path);
     host_status status = transfer_open(path, false, t, error);
     unlink(path);
     return status;
@@ -54,6 +60,35 @@ static void test_normalized_file(void **state)
     transfer_close(&t);
 }
 
+/* Two rows: at 0 nothing, at 8 and beyond the first red, then green. */
+static void test_rows(void **state)
+{
+    (void)state;
+    enum { COUNT = 3, ROWS = 5 };
+    static const char text[] = "# by magnitude\ngradient 2\n0 0 0 1 0\n  gradient 8 \r\n 0 1 0 0 1\n10 0 1 0 0.5\n";
+    double rgba[ROWS][COUNT][4], most;
+    transfer t;
+    host_error error;
+    char path[] = "/tmp/vodr-transfer-XXXXXX";
+    write_text(text, path);
+    assert_int_equal(transfer_open_rows(path, false, &t, &error), HOST_OK);
+    unlink(path);
+    assert_int_equal(t.row_count, 2);
+    assert_int_equal(transfer_sample_rows(&t, 0, 10, COUNT, ROWS, 1, &rgba[0][0][0], &most, &error), HOST_OK);
+    assert_true(most == 0.8);
+    /* Rows are at 0, 2, 4, 6 and 8; values 0, 5, 10. */
+    static const double share[ROWS] = {0, 0, 1.0 / 3, 2.0 / 3, 1};
+    static const double last[COUNT][4] = {{1, 0, 0, 1}, {0.375, 0.375, 0, 0.75}, {0, 0.5, 0, 0.5}};
+    for (int j = 0; j < ROWS; j++)
+        for (int i = 0; i < COUNT; i++)
+            for (int c = 0; c < 4; c++)
+                assert_true(fabs(rgba[j][i][c] - share[j] * last[i][c]) < 1e-12);
+    /* Two voxels deep. */
+    assert_int_equal(transfer_sample_rows(&t, 0, 10, COUNT, ROWS, 2, &rgba[0][0][0], &most, &error), HOST_OK);
+    assert_true(fabs(rgba[4][2][3] - 0.75) < 1e-12);
+    transfer_close(&t);
+}
+
 static void test_bad_files(void **state)
 {
     (void)state;
@@ -72,6 +107,18 @@ static void test_bad_files(void **state)
         {"1 0 0 0 0\n# normalized\n", ":2: `# normalized` must come before"},
         {"# normalized\n2 0 0 0 0\n", "value is '2' but must be a number from 0 to 1"},
         {"3 0 0 0 0\n1 0 0 0 1\n", ":2: value 1 is not above"},
+        {"gradient 0\n", "no point"},
+        {"1 0 0 0 0\ngradient 1\n1 0 0 0 0\n", ":2: `gradient` must come before the first point"},
+        {"gradient 1\n# normalized\n1 0 0 0 0\n", ":2: `# normalized` must come before"},
+        {"gradient -1\n1 0 0 0 0\n", ":1: gradient is '-1' but must be a number from 0"},
+        {"gradient inf\n1 0 0 0 0\n", ":1: gradient is 'inf'"},
+        {"gradient\n1 0 0 0 0\n", ":1: 'gradient' is not of the form"},
+        {"gradient 1 2\n1 0 0 0 0\n", ":1: 'gradient 1 2' is not of the form"},
+        {"gradient 0\ngradient 1\n1 0 0 0 0\n", ":2: gradient 0 has no point"},
+        {"gradient 0\n1 0 0 0 0\ngradient 1\n", ": gradient 1 has no point"},
+        {"gradient 1\n1 0 0 0 0\ngradient 1\n1 0 0 0 0\n", ":3: gradient 1 is not above"},
+        {"gradient 0\n1 0 0 0 0\n1 0 0 0 0\n", ":3: value 1 is not above"},
+        {"gradient 0\n1 0 0 0 0\ngradient 1\n0 0 0 0 0\n", "is of value and gradient magnitude"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         transfer t;
@@ -155,10 +202,9 @@ static void test_builtins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_text_file), cmocka_unit_test(test_normalized_file),
-        cmocka_unit_test(test_bad_files), cmocka_unit_test(test_unknown_name),
-        cmocka_unit_test(test_ramp),      cmocka_unit_test(test_opacity_correction),
-        cmocka_unit_test(test_builtins),
+        cmocka_unit_test(test_text_file),          cmocka_unit_test(test_normalized_file), cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_bad_files),          cmocka_unit_test(test_unknown_name),    cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_opacity_correction), cmocka_unit_test(test_builtins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

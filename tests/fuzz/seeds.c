@@ -120,6 +120,7 @@ static void texts(seeds *s)
     put_text(s, "costs", "energy", "# pJ\nadd | 0.03\nsram_word|10 | 64 bits\n");
     put_text(s, "costs", "cells", "pixel_cache WAYS=2 LINE_W=8 | 70 | 8 | 9\nrasterizer | 9 word bits | 2\n");
     put_text(s, "transfer", "units", "# comment\n-100 0 0 0 0\r\n  300 1 0.5 0 0.8\n\n1e3 1 1 1 1\n");
+    put_text(s, "transfer", "rows", "gradient 1\n0 1 1 1 0\n2 1 1 1 0\ngradient 20\n1 1 1 1 0.05\n");
     put_text(s, "transfer", "normalized", "# normalized\n0 1 1 1 0\n1 1 1 1 0.05\n");
     static const char *const spaces[] = {"RGB", "HSV", "Lab", "Diverging"};
     for (int i = 0; i < 4; i++) {

@@ -88,6 +88,17 @@ static void check_table(const transfer *t, double lo, double hi, double depth_vo
                "colours and opacities lie from 0 to 1");
 }
 
+static void check_rows(const transfer *t)
+{
+    enum { COUNT = 7, ROWS = 5 };
+    double rgba[4 * COUNT * ROWS], most;
+    host_error error;
+    fuzz_check(transfer_sample_rows(t, 0, 255, COUNT, ROWS, 1, rgba, &most, &error) == HOST_OK && most > 0,
+               "rows can be sampled");
+    for (int i = 0; i < 4 * COUNT * ROWS; i++)
+        fuzz_check(rgba[i] >= 0 && rgba[i] <= 1 + 1e-12, "samples lie from 0 to 1");
+}
+
 void fuzz_transfer(const uint8_t *data, size_t size,
                    host_status (*parse)(char *text, const char *path, transfer *t, host_error *error))
 {
@@ -97,7 +108,10 @@ void fuzz_transfer(const uint8_t *data, size_t size,
     transfer t = {.name = "fuzz"};
     host_error error = {""};
     host_status status = parse(text, "fuzz", &t, &error);
-    if (status == HOST_OK) {
+    if (status == HOST_OK && t.rows) {
+        if (t.row_count > 1)
+            check_rows(&t);
+    } else if (status == HOST_OK) {
         check_table(&t, 0, 255, 1);
         check_table(&t, -1e300, 1e300, 0.5);
         double first = t.points[0].value, last = t.points[t.count - 1].value;
