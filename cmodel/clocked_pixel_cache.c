@@ -320,13 +320,6 @@ static void read_nothing(void *context, int64_t line, vodr_rgba *pixels)
     (void)pixels;
 }
 
-static void write_nothing(void *context, int64_t line, const vodr_rgba *pixels)
-{
-    (void)context;
-    (void)line;
-    (void)pixels;
-}
-
 bool clocked_pixel_cache(const block_setup *setup, pixel_cache_face *face, pixel_cache_out *reset)
 {
     const vodr_machine *m = setup->machine;
@@ -342,7 +335,7 @@ bool clocked_pixel_cache(const block_setup *setup, pixel_cache_face *face, pixel
     s->misses = m->nonblocking ? m->nonblocking_misses : 1;
     s->wanted = -1;
     s->last_read = -m->blend_cycles;
-    const cache_memory nothing = {.read_line = read_nothing, .write_line = write_nothing};
+    const cache_memory nothing = {.read_line = read_nothing}; /* its tags are never dirty: nothing is written */
     bool made = pixel_cache_start(&s->tags, m, s->layout.lines, false, nothing, NULL) == VODR_OK;
     size_t lines = (size_t)s->tags.sets * (size_t)s->tags.ways;
     s->data = malloc(lines * (size_t)s->line_bytes);
@@ -354,6 +347,8 @@ bool clocked_pixel_cache(const block_setup *setup, pixel_cache_face *face, pixel
     s->places = calloc((size_t)m->write_fifo, sizeof *s->places);
     made &= cache_access_ring_reserve(&s->queue, (size_t)m->nonblocking_fifo);
     made &= cache_place_ring_reserve(&s->writing, (size_t)m->write_fifo);
+    if (!made || !s->data || !s->dirty || !s->filled || !s->blends || !s->places)
+        return false;
     decide(s, &reset->door);
-    return made && s->data && s->dirty && s->filled && s->blends && s->places;
+    return true;
 }

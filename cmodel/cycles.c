@@ -19,7 +19,7 @@ enum { EAGER_OPS = 4096 };
  * has nothing left to do all others wait for its next word too. */
 static void pump(cycles *c)
 {
-    for (;;) {
+    while (!c->failed) {
         bool moved = cycles_advance_raster(c);
         moved |= cycles_advance_tags(c);
         moved |= c->nonblocking && cycles_advance_data(c);
@@ -27,7 +27,7 @@ static void pump(cycles *c)
             continue;
         bool starved = c->op_next == c->op_count && !c->ended;
         bool waits = c->op_next < c->op_count || c->door.count || c->tagged.count;
-        if (starved || !waits || c->failed || !cycles_grant(c))
+        if (starved || !waits || !cycles_grant(c))
             return;
     }
 }
@@ -67,8 +67,8 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
 /* Room for one more op; false when there is none. */
 static bool make_room(cycles *c)
 {
-    if (c->op_count < c->op_room)
-        return true;
+    if (c->failed || c->op_count < c->op_room)
+        return !c->failed;
     size_t room = c->op_room ? 2 * c->op_room : 1024;
     cycle_op *grown = realloc(c->ops, room * sizeof *grown);
     c->failed |= !grown;
@@ -229,6 +229,8 @@ bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
     vodr_cycles *n = &c->n;
     c->ended = true;
     pump(c);
+    if (c->failed)
+        return false;
     int64_t searched = (c->announced < 0 ? -1 : visit_at(c, c->announced)->divided) + work_cycles;
     flush(c, searched);
     n->blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)c->accepted;

@@ -267,7 +267,7 @@ static bool pop_segment(cycles *c)
 bool cycles_advance_tags(cycles *c)
 {
     bool moved = false;
-    for (;;) {
+    while (!c->failed) {
         if (c->miss != MISS_NONE && !c->nonblocking) {
             const segment *s = segment_ring_front(&c->door);
             if (!cycles_resolve_miss(c, &s->access, &s->px, s->slice_start))
@@ -280,6 +280,7 @@ bool cycles_advance_tags(cycles *c)
         }
         moved = true;
     }
+    return moved;
 }
 
 /* ---- non-blocking: the data stage ---- */
@@ -333,7 +334,7 @@ static bool read_segment(cycles *c)
 bool cycles_advance_data(cycles *c)
 {
     bool moved = false;
-    while (c->tagged.count && read_segment(c))
+    while (!c->failed && c->tagged.count && read_segment(c))
         moved = true;
     return moved;
 }

@@ -184,7 +184,7 @@ bool cycles_advance_raster(cycles *c)
 {
     bool moved = false;
     cycles_settle_loads(c);
-    while (c->op_next < c->op_count) {
+    while (!c->failed && c->op_next < c->op_count) {
         const cycle_op *op = &c->ops[c->op_next];
         if (op->kind == OP_SLICE) {
             take_slice(c);
@@ -201,6 +201,8 @@ bool cycles_advance_raster(cycles *c)
         c->op_done = 0;
         c->op_next++;
     }
+    if (c->failed)
+        return moved;
     settle_raster(c);
     if (c->current >= 0 && !c->eager)
         visit_at(c, c->current)->drained = c->raster - 1;

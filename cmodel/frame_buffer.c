@@ -55,13 +55,12 @@ vodr_status frame_buffer_readout(const frame_buffer *f, const vodr_machine *m, c
                                  vodr_frame *frame, vodr_error *error)
 {
     size_t pixels = (size_t)f->width_px * (size_t)f->height_px;
-    *frame = (vodr_frame){.width_px = f->width_px,
-                          .height_px = f->height_px,
-                          .bits = m->fb_bits,
-                          .bytes = pixels * (size_t)f->pixel_bytes};
-    frame->pixels = malloc(frame->bytes);
-    if (!frame->pixels)
-        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a frame of %zu bytes", frame->bytes);
+    size_t bytes = pixels * (size_t)f->pixel_bytes;
+    void *made = malloc(bytes);
+    if (!made)
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a frame of %zu bytes", bytes);
+    *frame = (vodr_frame){
+        .width_px = f->width_px, .height_px = f->height_px, .bits = m->fb_bits, .pixels = made, .bytes = bytes};
     uint8_t *out8 = frame->pixels;
     uint16_t *out16 = frame->pixels;
     for (int32_t y = 0; y < f->height_px; y++)

@@ -148,15 +148,6 @@ static bool draw_wrong(test_case *c, const vodr_machine *m, outcome *o)
     return o->status == VODR_OK;
 }
 
-static void random_machine(test_case *c, vodr_machine *m)
-{
-    *m = c->machine;
-    case_organise(c, m);
-    m->traversal = (int32_t)rng_int(&c->random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_TILE);
-    case_time(c, m);
-    case_multiply(c, m);
-}
-
 static bool tell(FILE *file, const test_case *c, const vodr_machine *m, const char *what)
 {
     fprintf(file, "  %s\n", what);
@@ -170,7 +161,7 @@ static bool agree(test_case *c, FILE *file)
     events heard[2] = {{0}, {0}};
     outcome drawn[2], shuffled = {0}, wrong = {0};
     vodr_machine m;
-    random_machine(c, &m);
+    case_any_machine(c, &m);
     for (int i = 0; i < 2; i++) {
         const vodr_observer observer = {&heard[i], on_visit, on_miss};
         const vodr_options options = {

@@ -16,54 +16,7 @@
 
 enum { DEFAULT_CASES = 60, MIXES = 1 << VODR_BLOCK_COUNT, MIXES_SEED = 28 };
 
-/* What the Verilog has as parameters: each line is a set of libraries. */
-static const char *const machines[][4][2] = {
-    {{NULL, NULL}},
-    {{"line_px", "32x1"}},
-    {{"traversal", "whole"}},
-    {{"nonblocking", "1"}},
-};
-
 /* ---- drawing ---- */
-
-static void set(vodr_machine *m, const char *name, const char *value)
-{
-    vodr_error error;
-    if (vodr_machine_set(m, name, value, &error) != VODR_OK) {
-        fail_msg("%s", error.text);
-    }
-}
-
-static void set_number(vodr_machine *m, const char *name, int64_t value)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%" PRId64, value);
-    set(m, name, text);
-}
-
-/* Draws what the Verilog has as registers, small so that what is full, late or in the way happens in small frames. */
-static void draw_registers(rng *r, vodr_machine *m)
-{
-    static const char *const blends[] = {"over", "under", "mip"}, *const orders[] = {"layer", "column", "tile"},
-                             *const replacements[] = {"lru", "fifo", "random"};
-    set(m, "blend", blends[rng_int(r, 0, 2)]);
-    set(m, "filter", rng_one_in(r, 3) ? "nearest" : "linear");
-    if (m->traversal != VODR_TRAVERSAL_WHOLE) {
-        set(m, "traversal", orders[rng_int(r, 0, 2)]);
-    }
-    set(m, "replacement", replacements[rng_int(r, 0, 2)]);
-    set(m, "index", rng_one_in(r, 2) ? "xor" : "modulo");
-    set(m, "fb_layout", rng_one_in(r, 2) ? "linear" : "tiled");
-    set(m, "kill_transparent", rng_one_in(r, 3) ? "1" : "0");
-    set_number(m, "brick_setup_cycles", rng_int(r, 32, 60));
-    set_number(m, "slice_setup_cycles", rng_one_in(r, 4) ? 1 : rng_int(r, 1, 40));
-    set_number(m, "texture_latency_cycles", rng_one_in(r, 4) ? 3 : rng_int(r, 3, 30));
-    set(m, "memory", rng_one_in(r, 3) ? "dram" : "fixed");
-    set_number(m, "dram_refresh_cycles", rng_one_in(r, 4) ? 0 : rng_int(r, 60, 2000));
-    set_number(m, "dram_trfc_cycles", rng_int(r, 1, 50));
-    set_number(m, "dram_tcas_cycles", rng_int(r, 3, 30));
-    set_number(m, "texture_burst_bytes", 16 << rng_int(r, 0, 5));
-}
 
 static bool draw_c(test_case *c, const vodr_machine *m, outcome *o)
 {
@@ -95,17 +48,9 @@ static void random_blocks(rng *r, cosim_options *o)
 static bool agree(test_case *c, FILE *file)
 {
     cosim_options options = {.compare = COSIM_CYCLES};
-    vodr_machine m = c->machine;
+    vodr_machine m;
     outcome in_c, in_verilog;
-    const char *const(*settings)[2] = machines[rng_int(&c->random, 0, 3)];
-    /* Picture parameters of the case are widths in the Verilog: those of its table stay, others would be libraries. */
-    vodr_machine_named("paper-16", &m, &(vodr_error){""});
-    m.density_bits = c->machine.density_bits;
-    m.tf_bits = c->machine.tf_bits;
-    for (int i = 0; settings[i][0]; i++) {
-        set(&m, settings[i][0], settings[i][1]);
-    }
-    draw_registers(&c->random, &m);
+    case_verilog_machine(c, &m);
     random_blocks(&c->random, &options);
     if (!draw_c(c, &m, &in_c)) {
         return true; /* it cannot be built for this volume */

@@ -150,6 +150,15 @@ void case_multiply(test_case *c, vodr_machine *m)
     m->pipelines = rng_one_in(&c->random, 2) ? 1 : (int32_t)rng_int(&c->random, 2, 5);
 }
 
+void case_any_machine(test_case *c, vodr_machine *m)
+{
+    *m = c->machine;
+    case_organise(c, m);
+    m->traversal = (int32_t)rng_int(&c->random, VODR_TRAVERSAL_WHOLE, VODR_TRAVERSAL_TILE);
+    case_time(c, m);
+    case_multiply(c, m);
+}
+
 void case_spoil(test_case *c, vodr_machine *m)
 {
     rng *r = &c->random;

@@ -40,6 +40,14 @@ void case_time(test_case *c, vodr_machine *machine);
  * of one pipeline are the ones they are without it. */
 void case_multiply(test_case *c, vodr_machine *machine);
 
+/* A machine of which all of that is drawn, with the case's picture. */
+void case_any_machine(test_case *c, vodr_machine *machine);
+
+/* A machine that the Verilog has, one of few sets of its parameters, with registers drawn small, so that what is full,
+ * late or in the way happens in small frames. Of the picture it keeps the widths of the case's densities and table:
+ * others would be libraries of their own. It may be one that cannot be built for the case's volume. */
+void case_verilog_machine(test_case *c, vodr_machine *machine);
+
 /* Gives a machine about as much texture memory as its bricks need, or too small a cache: it may not be buildable. */
 void case_spoil(test_case *c, vodr_machine *machine);
 

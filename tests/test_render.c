@@ -1,0 +1,138 @@
+/* test_render.c - vodr_render()'s contract (cmodel/vodr.h): which inputs it refuses, what is then left in frame and
+ * counters, and that it tells how far it is, whoever draws. */
+#include <string.h>
+
+#include "lib/unit.h"
+
+#include "cases.h"
+#include "outcome.h"
+
+enum { SEED = 7 };
+
+/* ---- what is refused ---- */
+
+static void refuses(const test_case *c, const vodr_machine *m, vodr_path path, const char *words)
+{
+    static const vodr_counters none;
+    const vodr_options options = {.threads = 1, .path = path};
+    outcome o;
+    outcome_draw(c, m, &options, &o);
+    assert_int_equal(o.status, VODR_INVALID);
+    if (!strstr(o.error.text, words)) {
+        fail_msg("'%s' does not say '%s'", o.error.text, words);
+    }
+    assert_null(o.frame.pixels);
+    assert_memory_equal(&o.counters, &none, sizeof none);
+}
+
+static void refuses_everywhere(const test_case *c, const vodr_machine *m, const char *words)
+{
+    refuses(c, m, VODR_PATH_FAST, words);
+    refuses(c, m, VODR_PATH_BLOCKS, words);
+    refuses(c, m, VODR_PATH_CLOCKED, words);
+}
+
+static void bad_volumes(void **state)
+{
+    (void)state;
+    test_case c;
+    assert_true(case_make(SEED, &c));
+    const vodr_volume good = c.input;
+    vodr_machine m = unit_machine("density_bits=8");
+    for (int axis = 0; axis < 3; axis++) {
+        c.input.dims_vox[axis] = 0;
+        refuses_everywhere(&c, &m, "voxels but must have 1 to 32768 a side");
+        c.input.dims_vox[axis] = VODR_MAX_DIM_VOX + 1;
+        refuses_everywhere(&c, &m, "voxels but must have 1 to 32768 a side");
+        c.input = good;
+    }
+    c.input.voxel_bytes = 3;
+    refuses_everywhere(&c, &m, "voxel_bytes is 3 but must be 1 or 2");
+    c.input.voxel_bytes = 1;
+    c.input.map = NULL;
+    m.density_bits = 12;
+    refuses_everywhere(&c, &m, "8-bit voxels without a map need density_bits=8, not 12");
+    memset(c.map, 0, sizeof c.map);
+    c.map[255] = 256;
+    c.input.map = c.map;
+    m.density_bits = 8;
+    refuses_everywhere(&c, &m, "map entry 255 is 256 but must be below 256");
+    case_free(&c);
+}
+
+static void bad_tables(void **state)
+{
+    (void)state;
+    test_case c;
+    assert_true(case_make(SEED, &c));
+    const vodr_table good = c.table;
+    c.table.count--;
+    refuses_everywhere(&c, &c.machine, "entries");
+    c.table.entries = NULL;
+    refuses_everywhere(&c, &c.machine, "entries");
+    c.table = good;
+    c.entries[1] = (vodr_rgba){.r = 1, .a = 0};
+    refuses_everywhere(&c, &c.machine, "entry 1");
+    case_free(&c);
+}
+
+/* ---- progress ---- */
+
+static void on_progress(void *context, double done)
+{
+    double *last = context;
+    assert_true(done >= *last && done <= 1);
+    *last = done;
+}
+
+static void tells_progress(void **state)
+{
+    (void)state;
+    test_case c;
+    outcome o;
+    assert_true(case_make(SEED, &c));
+    for (int path = VODR_PATH_FAST; path <= VODR_PATH_BLOCKS; path++) {
+        for (int32_t blend = VODR_BLEND_OVER; blend <= VODR_BLEND_UNDER; blend++) {
+            vodr_machine m = c.machine;
+            double last = 0;
+            const vodr_options options = {
+                .threads = 2, .path = (vodr_path)path, .progress = on_progress, .progress_context = &last};
+            m.blend = blend;
+            outcome_draw(&c, &m, &options, &o);
+            assert_int_equal(o.status, VODR_OK);
+            assert_true(last > 0);
+            outcome_free(&o);
+        }
+    }
+    case_free(&c);
+}
+
+/* ---- what may be left out ---- */
+
+static void no_options(void **state)
+{
+    (void)state;
+    test_case c;
+    outcome with = {0}, without = {0};
+    assert_true(case_make(SEED, &c));
+    outcome_draw(&c, &c.machine, &(vodr_options){.threads = 1}, &with);
+    outcome_draw(&c, &c.machine, NULL, &without);
+    assert_true(outcome_same(stderr, &with, &without));
+    outcome_free(&with);
+    outcome_free(&without);
+    c.input.voxel_bytes = 3;
+    assert_int_equal(vodr_render(&c.machine, &c.input, &c.table, &c.view, NULL, &with.frame, &with.counters, NULL),
+                     VODR_INVALID);
+    case_free(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_volumes),
+        cmocka_unit_test(bad_tables),
+        cmocka_unit_test(tells_progress),
+        cmocka_unit_test(no_options),
+    };
+    return cmocka_run_group_tests_name("render", tests, NULL, NULL);
+}
