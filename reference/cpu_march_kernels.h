@@ -15,7 +15,7 @@ KERNEL packet tile_rays(const kernel_frame *f, kernel_filter filter, int32_t x, 
         rays.origin[a] = (REAL)f->part.origin_vox[a];
     for (int l = 0; l < LANES; l++) {
         int32_t px = x + l % TILE_W, py = y + l / TILE_W;
-        kernel_ray ray = ray_none();
+        kernel_ray ray = ray_none(&f->part);
         if (px < f->camera.width_px && py < y1)
             ray = ray_make(f, px, py);
         for (int a = 0; a < 3; a++) {

@@ -444,7 +444,7 @@ static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH
         y += lane >> launch.warp_log2;
     }
     const bool inside = x < f.camera.width_px && y < f.camera.height_px;
-    kernel_ray ray = ray_none();
+    kernel_ray ray = ray_none(&f.part);
     if (inside)
         ray = ray_make(&f, x, y);
     packet rays;

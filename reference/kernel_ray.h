@@ -45,10 +45,12 @@ KERNEL void ray_clip(double start, double step, int32_t low, int32_t high, int64
     *lo = enter;
 }
 
-/* A ray without samples. */
-KERNEL kernel_ray ray_none(void)
+/* A ray without samples, whose places lie in the first of the voxels at hand. */
+KERNEL kernel_ray ray_none(const kernel_part *part)
 {
-    const kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0, 0};
+    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0, 0};
+    for (int a = 0; a < 3; a++)
+        ray.start[a] = part->origin_vox[a] + 0.5;
     return ray;
 }
 
@@ -57,7 +59,7 @@ KERNEL kernel_ray ray_make(const kernel_frame *f, int32_t x, int32_t y)
 {
     const reference_camera *c = &f->camera;
     const kernel_part *part = &f->part;
-    kernel_ray ray = ray_none();
+    kernel_ray ray = ray_none(part);
     x += c->first_px[0];
     y += c->first_px[1];
     int64_t lo = 0, hi = c->most;
