@@ -12,7 +12,7 @@ SANITIZE ?=
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
 STRICT   := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -ffp-contract=off \
             -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-psabi -Werror
-INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -Irtl -Ivectors -isystem /usr/include/nifti
+INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -Icluster -Irtl -Ivectors -isystem /usr/include/nifti
 COMPILE   = $(CC) $(STRICT) $(CFLAGS) $(SANITIZE) $(INCLUDES) -pthread -MMD -MP
 REFERENCE_MATHS := -fno-math-errno -fno-trapping-math # lanes take square roots side by side; no result changes
 
@@ -24,6 +24,11 @@ CUDA_HOME := $(patsubst %/bin/nvcc,%,$(realpath $(NVCC)))
 CUDA_LIBRARIES := $(if $(NVCC),-L$(CUDA_HOME)/lib64 -lcudart_static -lstdc++ -ldl -lrt)
 
 comma := ,
+# MPI is optional: without mpicc `vodr cluster` draws in one process only. MPICC= leaves it out. What calls MPI is a library
+# of its own, which processes of mpirun load, so that the program starts fast and needs no MPI.
+MPICC    ?= $(shell command -v mpicc)
+MPI_FLAGS := $(if $(MPICC),$(patsubst -I%,-isystem %,$(shell $(MPICC) --showme:compile)))
+
 LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
 
 HW       := hw/parameters.txt hw/registers.txt
@@ -33,6 +38,7 @@ CMODEL   := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmodel/*.c)) $(BUILD)/gen/vod
 HOST     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out host/main.c,$(wildcard host/*.c))) \
             $(BUILD)/gen/energy_text.o $(BUILD)/gen/synthesis_text.o
 RTL      := $(patsubst %.c,$(BUILD)/%.o,$(wildcard rtl/*.c))
+CLUSTER  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cluster/*.c))
 VECTORS  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard vectors/*.c))
 REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c,$(wildcard reference/*.c))) \
              $(BUILD)/reference/$(if $(NVCC),device_cuda.o,device_no_cuda.o)
@@ -55,7 +61,7 @@ PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
 .PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
 
-all: $(BUILD)/vodr ## build build/vodr
+all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
 help: ## list the targets
 	@sed -n 's/^\([a-z][a-z-]*\):.*## /\1 - /p' Makefile | sort
@@ -218,6 +224,13 @@ $(BUILD)/libreference.a: $(REFERENCE)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/libcluster.a: $(CLUSTER)
+	@rm -f $@
+	ar rcs $@ $^
+
+$(BUILD)/vodr-mpi.so: cluster/mpi/node_mpi.c cluster/node.h cluster/cluster.h | $(GEN)
+	$(COMPILE) $(MPI_FLAGS) -fPIC -shared -o $@ $< $(shell $(MPICC) --showme:link)
+
 $(BUILD)/librtl.a: $(RTL)
 	@rm -f $@
 	ar rcs $@ $^
@@ -234,7 +247,7 @@ $(BUILD)/libhost.a: $(HOST)
 	@rm -f $@
 	ar rcs $@ $^
 
-$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(BUILD)/vodr: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
 $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a

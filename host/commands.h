@@ -6,6 +6,6 @@
 #include "options.h"
 
 extern const command command_render, command_reference, command_compare, command_info, command_machine, command_report,
-    command_sweep, command_vectors;
+    command_sweep, command_vectors, command_cluster;
 
 #endif

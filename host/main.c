@@ -7,8 +7,9 @@
 #include "commands.h"
 #include "vodr.h"
 
-static const command *const commands[] = {&command_render,  &command_reference, &command_report,  &command_sweep,
-                                          &command_compare, &command_info,      &command_machine, &command_vectors};
+static const command *const commands[] = {&command_render, &command_reference, &command_report,
+                                          &command_sweep,  &command_cluster,   &command_compare,
+                                          &command_info,   &command_machine,   &command_vectors};
 
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

@@ -22,7 +22,7 @@ typedef struct option_table {
     size_t count;
 } option_table;
 
-enum { OPTION_TABLES = 6, OPTION_OPERANDS = 2 };
+enum { OPTION_TABLES = 7, OPTION_OPERANDS = 2 };
 
 typedef struct command {
     const char *name;

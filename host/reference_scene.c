@@ -10,12 +10,6 @@
 /* Fine enough for the 4,096 entries of a machine's table of 12-bit densities to be among the points sampled. */
 enum { TABLE_COLUMNS = 4096, TABLE_ROWS = 65 };
 
-/* Stored voxels as reference/ reads them; a value is stored*scale + offset. */
-typedef struct stored {
-    reference_volume volume;
-    double scale, offset;
-} stored;
-
 host_status reference_scene_status(reference_status status)
 {
     return status == REFERENCE_OK ? HOST_OK : status == REFERENCE_INVALID ? HOST_BAD_INPUT : HOST_ENVIRONMENT;
@@ -25,16 +19,18 @@ host_status reference_scene_status(reference_status status)
 
 /* Integers: counted from the least value on, so that they are unsigned, rise with their values - the greatest is that
  * of a maximum - and lose little where a float places them in a window. */
-static void make_rising(volume *v, stored *s)
+static int64_t base_of(const volume *v)
 {
-    const int64_t base = llround((v->min - v->inter) / v->slope);
+    return llround((v->min - v->inter) / v->slope);
+}
+
+static void make_rising(volume *v)
+{
+    const int64_t base = base_of(v);
     const int sign = v->slope < 0 ? -1 : 1;
     const bool narrow = volume_type_bytes(v->type) == 1;
     uint8_t *voxels_8 = v->voxels;
     uint16_t *voxels_16 = v->voxels;
-    s->volume.type = narrow ? REFERENCE_UINT8 : REFERENCE_UINT16;
-    s->scale = fabs(v->slope);
-    s->offset = v->inter + v->slope * (double)base;
     if (base == 0 && sign > 0)
         return;
     for (size_t i = 0, n = volume_count(v); i < n; i++) /* modulo 2^8 or 2^16, signed or not */
@@ -54,16 +50,22 @@ static void make_floats(volume *v)
     }
 }
 
-static stored store(volume *v)
+static bool is_narrow(const volume *v)
 {
-    stored s = {.volume = {.type = REFERENCE_FLOAT32, .voxels = v->voxels}, .scale = 1};
-    memcpy(s.volume.dims_vox, v->dims_vox, sizeof s.volume.dims_vox);
-    if (volume_type_bytes(v->type) < sizeof(float))
-        make_rising(v, &s);
+    return volume_type_bytes(v->type) < sizeof(float);
+}
+
+reference_volume reference_scene_store(volume *v)
+{
+    if (is_narrow(v))
+        make_rising(v);
     else
         make_floats(v);
     v->quantised = true;
-    return s;
+    const reference_voxel type[] = {[1] = REFERENCE_UINT8, [2] = REFERENCE_UINT16, [4] = REFERENCE_FLOAT32};
+    return (reference_volume){.dims_vox = {v->dims_vox[0], v->dims_vox[1], v->dims_vox[2]},
+                              .type = type[volume_type_bytes(v->type)],
+                              .voxels = v->voxels};
 }
 
 /* ---- the job ---- */
@@ -81,11 +83,11 @@ static reference_camera camera_of(const scene *s, const reference_choice *c)
 }
 
 /* The scene's transfer function as a table of the job, for samples so many finest voxels long. */
-static host_status fill_table(reference_scene *r, const scene *s, double depth_vox, host_error *error)
+static host_status fill_table(const scene *s, double depth_vox, double **entries, reference_table *table,
+                              host_error *error)
 {
     const transfer *t = &s->transfer;
     const bool mip = s->machine.blend == VODR_BLEND_MIP;
-    reference_table *table = &r->job.table;
     table->columns = TABLE_COLUMNS;
     table->rows = t->row_count > 1 ? TABLE_ROWS : 1;
     if (t->rows && mip)
@@ -93,24 +95,27 @@ static host_status fill_table(reference_scene *r, const scene *s, double depth_v
                          "--tf: '%.512s' is of value and gradient magnitude, which does not go with blend=mip: it goes "
                          "with over and under",
                          t->name);
-    table->rgba = r->table = malloc(4 * (size_t)table->rows * TABLE_COLUMNS * sizeof *r->table);
-    if (!r->table)
+    table->rgba = *entries = malloc(4 * (size_t)table->rows * TABLE_COLUMNS * sizeof **entries);
+    if (!*entries)
         return host_fail(error, HOST_ENVIRONMENT, "no memory for the transfer-function table");
     if (table->rows > 1)
-        return transfer_sample_rows(t, s->window_lo, s->window_hi, TABLE_COLUMNS, TABLE_ROWS, depth_vox, r->table,
+        return transfer_sample_rows(t, s->window_lo, s->window_hi, TABLE_COLUMNS, TABLE_ROWS, depth_vox, *entries,
                                     &table->gradient_most, error);
-    transfer_sample(t, s->window_lo, s->window_hi, TABLE_COLUMNS, mip ? 1 : depth_vox, mip, r->table);
+    transfer_sample(t, s->window_lo, s->window_hi, TABLE_COLUMNS, mip ? 1 : depth_vox, mip, *entries);
     return HOST_OK;
 }
 
-static host_status fill_job(reference_scene *r, const scene *s, const reference_choice *c, const stored *v,
-                            host_error *error)
+host_status reference_scene_job(const scene *s, const reference_choice *c, double **table, reference_march_job *job,
+                                host_error *error)
 {
+    const volume *v = &s->volume;
+    const double scale = is_narrow(v) ? fabs(v->slope) : 1;
+    const double offset = is_narrow(v) ? v->inter + v->slope * (double)base_of(v) : 0;
     const bool mip = s->machine.blend == VODR_BLEND_MIP;
     const double width = s->window_hi - s->window_lo;
     if (!isfinite(width))
         return host_fail(error, HOST_BAD_INPUT, "window %g:%g: must be finite", s->window_lo, s->window_hi);
-    r->job = (reference_march_job){
+    *job = (reference_march_job){
         .camera = camera_of(s, c),
         .numbers = c->numbers,
         .blend = mip ? REFERENCE_MIP : REFERENCE_OVER,
@@ -119,10 +124,10 @@ static host_status fill_job(reference_scene *r, const scene *s, const reference_
         .accel = c->accel,
         .block_vox = c->block_vox,
         .termination = c->termination < 1 ? c->termination : 2,
-        .window_scale = width > 0 ? v->scale / width : 0,
-        .window_offset = width > 0 ? (v->offset - s->window_lo) / width : 0,
+        .window_scale = width > 0 ? scale / width : 0,
+        .window_offset = width > 0 ? (offset - s->window_lo) / width : 0,
     };
-    return fill_table(r, s, c->method == REFERENCE_RAYCAST ? c->step_vox : s->depth_vox, error);
+    return fill_table(s, c->method == REFERENCE_RAYCAST ? c->step_vox : s->depth_vox, table, &job->table, error);
 }
 
 static host_status open_fixed(scene *s, reference_volume *v, host_error *error)
@@ -139,17 +144,17 @@ host_status reference_scene_open(scene *s, const reference_choice *choice, int32
 {
     *r = (reference_scene){.scene = s, .fixed = choice->fixed};
     const reference_options options = {choice->device, threads, simd};
-    stored v = {0};
+    reference_volume v = {0};
     vodr_error reason;
     host_status status;
     if (choice->fixed) {
-        status = open_fixed(s, &v.volume, error);
+        status = open_fixed(s, &v, error);
     } else {
-        v = store(&s->volume);
-        status = fill_job(r, s, choice, &v, error);
+        v = reference_scene_store(&s->volume);
+        status = reference_scene_job(s, choice, &r->table, &r->job, error);
     }
     if (status == HOST_OK) {
-        status = reference_scene_status(reference_open(&options, &v.volume, &r->renderer, &reason));
+        status = reference_scene_status(reference_open(&options, &v, &r->renderer, &reason));
         if (status != HOST_OK)
             host_fail(error, status, "%s", reason.text);
     }

@@ -29,6 +29,14 @@ typedef struct reference_scene {
     double *table; /* of the job, owned */
 } reference_scene;
 
+/* Brings voxels into a form that floating point reads, as reference_scene_open() does, by the volume's min;
+ * volume_value() is not for them any more. */
+reference_volume reference_scene_store(volume *v);
+
+/* What a scene, whose volume's min is known, is as a job on such voxels; its table is new, to be freed. */
+host_status reference_scene_job(const scene *s, const reference_choice *choice, double **table,
+                                reference_march_job *job, host_error *error);
+
 /* Puts the volume of `s`, opened by scene_open_stored(), on the device; the voxels become densities (fixed), or are
  * brought into a form that floating point reads: integers counted from the least, those of 32 bits rounded to float32,
  * what is not finite replaced by the minimum. To be closed on success, before the scene is; callable once a

@@ -24,35 +24,51 @@ host_status scene_table(const vodr_machine *m, const transfer *t, double lo, dou
     return HOST_OK;
 }
 
-static host_status fill(scene *s, const char *path, const view_options *o, bool rows, host_error *error)
+static host_status fill(scene *s, const char *path, const view_options *o, bool voxels, host_error *error)
 {
     host_status status = view_options_machine(o, &s->machine, error);
     if (status == HOST_OK)
         status = cost_tables_open(o->energy, o->cells, &s->tables, error);
     if (status == HOST_OK)
-        status = volume_open(path, &o->volume, &s->volume, error);
-    if (status != HOST_OK)
-        return status;
+        status = voxels ? volume_open(path, &o->volume, &s->volume, error)
+                        : volume_open_header(path, &o->volume, &s->volume, error);
+    return status;
+}
+
+host_status scene_settle(scene *s, const view_options *o, bool rows, host_error *error)
+{
     bool ct = volume_is_ct(&s->volume);
-    status = (rows ? transfer_open_rows : transfer_open)(o->transfer, ct, &s->transfer, error);
+    host_status status = (rows ? transfer_open_rows : transfer_open)(o->transfer, ct, &s->transfer, error);
     if (status != HOST_OK)
         return status;
     scene_window(o, &s->transfer, ct, s->volume.min, s->volume.max, &s->window_lo, &s->window_hi);
-    return camera_view(&s->camera, &s->volume, &s->view, &s->depth_vox, error);
+    status = camera_view(&s->camera, &s->volume, &s->view, &s->depth_vox, error);
+    if (status != HOST_OK)
+        return status;
+    s->camera.width_px = s->view.width_px;
+    s->camera.height_px = s->view.height_px;
+    s->camera.slices = s->view.slices;
+    return HOST_OK;
 }
 
 host_status scene_open_stored(const char *path, const view_options *options, bool rows, scene *s, host_error *error)
 {
     *s = (scene){.machine_name = options->machine, .camera = options->camera};
-    host_status status = fill(s, path, options, rows, error);
-    if (status != HOST_OK) {
+    host_status status = fill(s, path, options, true, error);
+    if (status == HOST_OK)
+        status = scene_settle(s, options, rows, error);
+    if (status != HOST_OK)
         scene_close(s);
-        return status;
-    }
-    s->camera.width_px = s->view.width_px;
-    s->camera.height_px = s->view.height_px;
-    s->camera.slices = s->view.slices;
-    return HOST_OK;
+    return status;
+}
+
+host_status scene_open_header(const char *path, const view_options *options, scene *s, host_error *error)
+{
+    *s = (scene){.machine_name = options->machine, .camera = options->camera};
+    host_status status = fill(s, path, options, false, error);
+    if (status != HOST_OK)
+        scene_close(s);
+    return status;
 }
 
 host_status scene_quantise(scene *s, host_error *error)

@@ -33,6 +33,11 @@ void scene_close(scene *s);
  * be one of value and gradient magnitude too. */
 host_status scene_open_stored(const char *path, const view_options *options, bool rows, scene *s, host_error *error);
 
+/* The same without a voxel being read: machine and header alone. Once the volume's min and max are set,
+ * scene_settle() makes the rest, `rows` as above. */
+host_status scene_open_header(const char *path, const view_options *options, scene *s, host_error *error);
+host_status scene_settle(scene *s, const view_options *options, bool rows, host_error *error);
+
 /* Makes those of a scene opened by scene_open_stored() without rows. */
 host_status scene_quantise(scene *s, host_error *error);
 

@@ -220,9 +220,9 @@ static host_status find_range(volume *v, host_error *error)
     return HOST_OK;
 }
 
-static host_status fill(const volume_options *o, const volume_file *f, volume *v, host_error *error)
+/* All but the voxels and their range. */
+static void fill_header(const volume_options *o, const volume_file *f, volume *v, int32_t lo[3], int32_t hi[3])
 {
-    int32_t lo[3], hi[3];
     for (int i = 0; i < 3; i++) {
         lo[i] = o->crop ? o->crop_lo[i] : 0;
         hi[i] = o->crop ? o->crop_hi[i] : (int32_t)f->dims_vox[i];
@@ -234,11 +234,17 @@ static host_status fill(const volume_options *o, const volume_file *f, volume *v
     v->inter = f->inter;
     v->format = f->format;
     set_orientation(f, o->no_orient, v);
-    host_status status = volume_read_voxels(f, lo, hi, v, error);
-    return status == HOST_OK ? find_range(v, error) : status;
 }
 
-host_status volume_open(const char *path, const volume_options *options, volume *v, host_error *error)
+static host_status fill(const volume_options *o, const volume_file *f, volume *v, bool voxels, host_error *error)
+{
+    int32_t lo[3], hi[3];
+    fill_header(o, f, v, lo, hi);
+    host_status status = voxels ? volume_read_voxels(f, lo, hi, v, error) : HOST_OK;
+    return status == HOST_OK && voxels ? find_range(v, error) : status;
+}
+
+static host_status open_file(const char *path, const volume_options *options, volume *v, bool voxels, host_error *error)
 {
     *v = (volume){.path = strdup(path)};
     volume_file f = {.slope = 1};
@@ -248,11 +254,21 @@ host_status volume_open(const char *path, const volume_options *options, volume 
     if (status == HOST_OK)
         status = check_header(path, options, &f, error);
     if (status == HOST_OK)
-        status = fill(options, &f, v, error);
+        status = fill(options, &f, v, voxels, error);
     volume_file_close(&f);
     if (status != HOST_OK)
         volume_close(v);
     return status;
+}
+
+host_status volume_open(const char *path, const volume_options *options, volume *v, host_error *error)
+{
+    return open_file(path, options, v, true, error);
+}
+
+host_status volume_open_header(const char *path, const volume_options *options, volume *v, host_error *error)
+{
+    return open_file(path, options, v, false, error);
 }
 
 void volume_close(volume *v)

@@ -51,11 +51,21 @@ typedef struct volume {
 host_status volume_open(const char *path, const volume_options *options, volume *v, host_error *error);
 void volume_close(volume *v);
 
+/* The same without a voxel being read: voxels is NULL, min, max and nonfinite are 0. */
+host_status volume_open_header(const char *path, const volume_options *options, volume *v, host_error *error);
+
 /* Number of voxels. */
 size_t volume_count(const volume *v);
 
 /* The value of voxel i (slope and inter applied, nonfinite as the minimum). Not after volume_quantise(). */
 double volume_value(const volume *v, size_t i);
+
+/* The least and greatest values in the box [lo, hi), as of volume_value() before volume_quantise(); where one is not
+ * finite the least is -INFINITY. */
+void volume_box_range(const volume *v, const int32_t lo[3], const int32_t hi[3], double *least, double *most);
+
+/* A copy of the box [lo, hi), with the range of the whole; to be closed on success. */
+host_status volume_cut(const volume *v, const int32_t lo[3], const int32_t hi[3], volume *out, host_error *error);
 
 /* Whether the values look like a CT in Hounsfield units: their minimum is below -500. */
 bool volume_is_ct(const volume *v);

@@ -11,15 +11,18 @@ enum { TILE_W = CPU_TILE_PX, TILE_H = LANES / CPU_TILE_PX };
 KERNEL packet tile_rays(const kernel_frame *f, kernel_filter filter, int32_t x, int32_t y, int32_t y1)
 {
     packet rays;
+    for (int a = 0; a < 3; a++)
+        rays.origin[a] = (REAL)f->part.origin_vox[a];
     for (int l = 0; l < LANES; l++) {
         int32_t px = x + l % TILE_W, py = y + l / TILE_W;
-        kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0};
+        kernel_ray ray = ray_none(&f->part);
         if (px < f->camera.width_px && py < y1)
             ray = ray_make(f, px, py);
         for (int a = 0; a < 3; a++) {
             rays.start[a][l] = (REAL)(ray.start[a] + (double)place_shift(filter));
             rays.step[a][l] = (REAL)ray.step[a];
         }
+        rays.skipped[l] = (REAL)ray.skipped;
         rays.count[l] = ray.count;
         rays.first[l] = ray.first;
     }

@@ -444,14 +444,16 @@ static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH
         y += lane >> launch.warp_log2;
     }
     const bool inside = x < f.camera.width_px && y < f.camera.height_px;
-    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0};
+    kernel_ray ray = ray_none(&f.part);
     if (inside)
         ray = ray_make(&f, x, y);
     packet rays;
     for (int a = 0; a < 3; a++) {
         rays.start[a] = (float)(ray.start[a] + place_shift(filter));
         rays.step[a] = (float)ray.step[a];
+        rays.origin[a] = (float)f.part.origin_vox[a];
     }
+    rays.skipped = (float)ray.skipped;
     rays.count = ray.count;
     rays.first = ray.first;
     packet_result result = cast(&f, &table, &rays, mode, filter, skip, type);

@@ -24,7 +24,9 @@ KERNEL bundle bundle_of(const packet *rays, whole lag, REAL shift)
     all.most = together_most(rays->count + lag);
     for (int a = 0; a < 3; a++) {
         REAL least[2], most[2];
-        const real along[2] = {rays->start[a] - to_real(lag) * rays->step[a] + ((REAL)0.5 - shift), rays->step[a]};
+        const real along[2] = {rays->start[a] + (rays->skipped - to_real(lag)) * rays->step[a] - rays->origin[a] +
+                                   ((REAL)0.5 - shift),
+                               rays->step[a]};
         for (int i = 0; i < 2; i++) {
             most[i] = together_most_real(pick(some, along[i], spread((REAL)-1e30)));
             least[i] = -together_most_real(pick(some, -along[i], spread((REAL)-1e30)));

@@ -69,8 +69,7 @@ KERNEL void march_ask(const kernel_frame *f, const packet *rays, const bundle *a
                       reference_voxel type, int32_t n)
 {
     real at = smaller(spread((REAL)n), to_real(rays->count - 1)), place[3];
-    for (int a = 0; a < 3; a++)
-        place[a] = rays->start[a] + at * rays->step[a];
+    place_of(rays, at, place);
     fetch_ahead(&f->volume, type, place);
     if (mode != KERNEL_LIT)
         return;
@@ -94,8 +93,7 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
         real at = spread((REAL)s->n + (REAL)k);
         if (LANES > 1 || !all)
             at = pick(at > last, last, at);
-        for (int a = 0; a < 3; a++)
-            p[k][a] = rays->start[a] + at * rays->step[a];
+        place_of(rays, at, p[k]);
         value[k] = sample(&f->volume, type, filter, p[k]);
     }
     for (int k = 0; k < batch; k++) {
@@ -150,10 +148,12 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
 /* What the greatest of all samples shows; MARCH_LOWEST: there was none. */
 KERNEL void march_greatest(const kernel_frame *f, const lookup *entries, real greatest, packet_result *out)
 {
-    real colour[4];
-    classify(entries, classify_column(&f->table, greatest), colour);
+    const mask some = greatest > MARCH_LOWEST;
+    real colour[4] = {greatest, greatest, greatest, spread(1)};
+    if (!f->stored)
+        classify(entries, classify_column(&f->table, greatest), colour);
     for (int c = 0; c < 4; c++)
-        out->rgba[c] = pick(greatest > MARCH_LOWEST, colour[c], spread(0));
+        out->rgba[c] = pick(some, colour[c], spread(0));
 }
 
 /* The whole ray, in KERNEL_OVER, KERNEL_LIT or KERNEL_MIP. */

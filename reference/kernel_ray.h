@@ -32,23 +32,36 @@ KERNEL int64_t ray_crossing(double start, double step, double border, int64_t lo
     return j;
 }
 
-/* Cuts [*lo, *hi) to the samples that lie in [0, size). */
-KERNEL void ray_clip(double start, double step, int32_t size, int64_t *lo, int64_t *hi)
+/* Cuts [*lo, *hi) to the samples that lie in [low, high). */
+KERNEL void ray_clip(double start, double step, int32_t low, int32_t high, int64_t *lo, int64_t *hi)
 {
     if (step == 0) {
-        if (!(start >= 0 && start < size))
+        if (!(start >= low && start < high))
             *hi = *lo;
         return;
     }
-    int64_t enter = ray_crossing(start, step, step > 0 ? 0 : size, *lo, *hi);
-    *hi = ray_crossing(start, step, step > 0 ? size : 0, enter, *hi);
+    int64_t enter = ray_crossing(start, step, step > 0 ? low : high, *lo, *hi);
+    *hi = ray_crossing(start, step, step > 0 ? high : low, enter, *hi);
     *lo = enter;
 }
 
+/* A ray without samples, whose places lie in the first of the voxels at hand. */
+KERNEL kernel_ray ray_none(const kernel_part *part)
+{
+    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0, 0};
+    for (int a = 0; a < 3; a++)
+        ray.start[a] = part->origin_vox[a] + 0.5;
+    return ray;
+}
+
+/* The ray of pixel (x, y) of the part of the picture that is drawn. */
 KERNEL kernel_ray ray_make(const kernel_frame *f, int32_t x, int32_t y)
 {
     const reference_camera *c = &f->camera;
-    kernel_ray ray = {{0.5, 0.5, 0.5}, {0, 0, 0}, 0, 0};
+    const kernel_part *part = &f->part;
+    kernel_ray ray = ray_none(part);
+    x += c->first_px[0];
+    y += c->first_px[1];
     int64_t lo = 0, hi = c->most;
     double o[3], d[3], square = 0;
     for (int a = 0; a < 3; a++) {
@@ -66,14 +79,18 @@ KERNEL kernel_ray ray_make(const kernel_frame *f, int32_t x, int32_t y)
     for (int a = 0; a < 3; a++) {
         o[a] = ray_along(o[a], c->first, d[a]);
         d[a] = c->spacing * d[a];
-        ray_clip(o[a], d[a], f->volume.dims_vox[a], &lo, &hi);
+        ray_clip(o[a], d[a], 0, part->whole_vox[a], &lo, &hi);
     }
+    const int64_t enter = lo;
+    for (int a = 0; part->boxed && a < 3; a++)
+        ray_clip(o[a], d[a], part->lo_vox[a], part->hi_vox[a], &lo, &hi);
     if (lo >= hi)
         return ray;
     ray.count = (int32_t)(hi - lo);
+    ray.skipped = (int32_t)(lo - enter);
     ray.first = (int32_t)lo;
     for (int a = 0; a < 3; a++) {
-        ray.start[a] = ray_along(o[a], (double)lo, d[a]);
+        ray.start[a] = ray_along(o[a], (double)enter, d[a]);
         ray.step[a] = d[a];
     }
     return ray;

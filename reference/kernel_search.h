@@ -95,8 +95,7 @@ KERNEL void search_look(const kernel_frame *f, const packet *rays, kernel_filter
         const mask some = s->live & (n >= 0) & (n < rays->count);
         real p[3];
         n = pick_whole(some, n, spread_whole(0));
-        for (int a = 0; a < 3; a++)
-            p[a] = rays->start[a] + to_real(n) * rays->step[a];
+        place_of(rays, to_real(n), p);
         const whole code = search_cell(f, place_shift(filter), p);
         chunk->key[k] = pick_whole(some, code * RUN + k, spread_whole(-1));
     }
@@ -116,11 +115,9 @@ KERNEL void search_take(const kernel_frame *f, const packet *rays, kernel_filter
             return;
         const real n = to_real(chunk->begin + top % RUN - s->lag);
         real p[3];
-        for (int a = 0; a < 3; a++) {
-            p[a] = rays->start[a] + n * rays->step[a];
-            if (LANES > 1) /* off the volume's sides, where sampling is slower */
-                p[a] = pick(on, p[a], spread(1));
-        }
+        place_of(rays, n, p);
+        for (int a = 0; LANES > 1 && a < 3; a++) /* off the volume's sides, where sampling is slower */
+            p[a] = pick(on, p[a], spread(1));
         const real value = sample(&f->volume, type, filter, p);
         s->greatest = pick(on, larger(value, s->greatest), s->greatest);
         out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));

@@ -4,12 +4,23 @@
 
 #include "kernel_colour.h"
 
-/* The rays of kernel_ray.h, a lane each, at places of the filter; past its count a lane rests. */
+/* The rays of kernel_ray.h, a lane each, at places of the filter in the whole volume; past its count a lane rests. */
 typedef struct packet {
     real start[3], step[3];
+    real skipped; /* as of kernel_ray */
     whole count;
-    whole first; /* as of kernel_ray */
+    whole first;    /* as of kernel_ray */
+    REAL origin[3]; /* of the volume in the whole */
 } packet;
+
+/* The places of sample n in the volume. A place in the whole volume is rounded alike whatever part is drawn, and what
+ * is taken off it for the part's origin leaves no rest: a part's sample is the whole's to the bit. */
+KERNEL void place_of(const packet *rays, real n, real place[3])
+{
+    const real at = n + rays->skipped;
+    for (int a = 0; a < 3; a++)
+        place[a] = rays->start[a] + at * rays->step[a] - rays->origin[a];
+}
 
 /* Where the rays of a packet are: all at the same of their samples, so that what they read lies together. */
 typedef struct progress {
@@ -64,8 +75,7 @@ KERNEL void march_skip(const kernel_frame *f, const march_lane *lane, const pack
         real p[3];
         whole at[3], distance;
         const real from = pick(s->live, spread((REAL)s->n), spread(0));
-        for (int a = 0; a < 3; a++)
-            p[a] = rays->start[a] + from * rays->step[a];
+        place_of(rays, from, p);
         whole block = block_of(b, shift, p, at);
         distance = fetch_byte(b->distance, block);
         mask shows = distance == 0;

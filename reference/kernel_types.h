@@ -26,12 +26,20 @@ typedef enum kernel_mode {
 /* Whether blocks with nothing to show are passed over, in KERNEL_OVER and KERNEL_LIT. */
 typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIPS } kernel_skip;
 
-/* One pixel's ray, clipped to the volume: sample n of `count` lies at start + n*step, in voxels. */
+/* One pixel's ray, clipped to the volume, or to a box of it: sample n of `count` lies at start + (n + skipped)*step, in
+ * voxels of the whole volume. */
 typedef struct kernel_ray {
-    double start[3], step[3];
+    double start[3], step[3]; /* start: where the ray enters the whole volume */
+    int32_t skipped;          /* samples in the whole volume before the box */
     int32_t count;
     int32_t first; /* number of sample 0 on the ray before it was clipped: the same plane for all pixels */
 } kernel_ray;
+
+/* Which samples of the whole volume are drawn, and where in it the voxels at hand begin. */
+typedef struct kernel_part {
+    int32_t whole_vox[3], origin_vox[3], lo_vox[3], hi_vox[3];
+    bool boxed; /* lo and hi are not the whole volume's */
+} kernel_part;
 
 /* Cell i of an axis lies between the centres of voxels i-1 and i, clamped to the volume, so that an axis has one more
  * than voxels. A position p voxels from the volume's corner lies in cell floor(p + 0.5). */
@@ -76,6 +84,7 @@ typedef struct kernel_table {
 typedef struct kernel_frame {
     reference_camera camera;
     kernel_volume volume;
+    kernel_part part;
     kernel_blocks blocks;
     kernel_bounds bounds; /* KERNEL_SEARCH; of KERNEL_LEAP only what a code stands for */
     kernel_table table;
@@ -83,6 +92,7 @@ typedef struct kernel_frame {
     kernel_skip skip;
     double termination;
     bool phong;
+    bool stored;          /* mip: the greatest stored value comes out, and 1 where there is one */
     double surface_scale; /* phong: from a gradient magnitude of 1/surface_scale on there is a whole surface */
 } kernel_frame;
 

@@ -11,6 +11,7 @@
 #include "blocks.h"
 #include "bounds.h"
 #include "device.h"
+#include "part.h"
 
 enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MOST_SAMPLES = 1 << 24 };
 
@@ -50,7 +51,7 @@ static reference_status check_volume(const reference_volume *v, vodr_error *erro
         if (v->dims_vox[a] < 1 || v->dims_vox[a] > VODR_MAX_DIM_VOX)
             return reference_fail(error, REFERENCE_INVALID, "the volume's size along %c is %d, must be 1 to %d voxels",
                                   "xyz"[a], v -> dims_vox[a], VODR_MAX_DIM_VOX);
-    return REFERENCE_OK;
+    return part_check_volume(v, error);
 }
 
 reference_status reference_open(const reference_options *options, const reference_volume *volume, reference **out,
@@ -122,6 +123,8 @@ static reference_status check_fixed(const reference *r, const vodr_machine *m, c
 {
     if (r->volume.type == REFERENCE_FLOAT32)
         return reference_fail(error, REFERENCE_INVALID, "the machine's voxels are integers, not floats");
+    if (r->volume.whole_vox[0])
+        return reference_fail(error, REFERENCE_INVALID, "the machine draws a whole volume, not a part of one");
     if (r->volume.type == REFERENCE_UINT8 && !map && m->density_bits != 8)
         return reference_fail(error, REFERENCE_INVALID, "density_bits is %d, must be 8 for 8-bit voxels without a map",
                               m->density_bits);
@@ -238,6 +241,18 @@ static reference_status check_march(const reference *r, const reference_march_jo
     return REFERENCE_OK;
 }
 
+/* Leaps count from where a ray enters the voxels at hand, so they are not of parts. */
+static reference_status check_part(const reference *r, const reference_march_job *job, kernel_part *part,
+                                   vodr_error *error)
+{
+    reference_status status = part_of(&r->volume, job, part, error);
+    const bool leaps =
+        job->blend == REFERENCE_MIP && job->accel != REFERENCE_ACCEL_NONE && job->accel != REFERENCE_ACCEL_BEST;
+    if (status == REFERENCE_OK && leaps && !part_is_whole(part, r->volume.dims_vox))
+        return reference_fail(error, REFERENCE_INVALID, "of a part, mip has no accel but none and best");
+    return status;
+}
+
 /* The table in the numbers it is used in, with copies of its last entries behind (kernel_types.h). */
 static void *convert_table(const reference_march_job *job)
 {
@@ -307,14 +322,16 @@ bool reference_accel_suits(reference_accel accel, reference_blend blend)
     return blend == REFERENCE_MIP || (accel != REFERENCE_ACCEL_BISECT && accel != REFERENCE_ACCEL_SEED);
 }
 
-static kernel_mode mode_of(const reference *r, const reference_march_job *job)
+static kernel_mode mode_of(const reference *r, const reference_march_job *job, const kernel_part *part)
 {
     kernel_bounds bounds;
     if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_NONE)
         return KERNEL_MIP;
+    if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_BEST &&
+        bounds_shape(r->volume.dims_vox, &bounds) > 0)
+        return KERNEL_SEARCH;
     if (job->blend == REFERENCE_MIP)
-        return job->accel == REFERENCE_ACCEL_BEST && bounds_shape(r->volume.dims_vox, &bounds) > 0 ? KERNEL_SEARCH
-                                                                                                   : KERNEL_LEAP;
+        return part_is_whole(part, r->volume.dims_vox) ? KERNEL_LEAP : KERNEL_MIP;
     return job->shading == REFERENCE_PHONG || job->table.rows > 1 ? KERNEL_LIT : KERNEL_OVER;
 }
 
@@ -340,7 +357,10 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
                                  vodr_error *error)
 {
     *stats = (reference_stats){0};
+    kernel_part part;
     reference_status status = check_march(r, job, error);
+    if (status == REFERENCE_OK)
+        status = check_part(r, job, &part, error);
     const bool skips = job->accel != REFERENCE_ACCEL_NONE && job->blend != REFERENCE_MIP;
     if (status == REFERENCE_OK && skips)
         status = need_blocks(r, job->block_vox, stats, error);
@@ -357,20 +377,33 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
     device_march m = {.frame = {.camera = job->camera,
                                 .volume = {.type = r->volume.type, .voxels = r->volume.voxels},
+                                .part = part,
                                 .table = table_of(job, table),
                                 .filter = filter_of(job),
                                 .skip = skips ? KERNEL_SKIP_EMPTY : KERNEL_SKIP_NONE,
                                 .termination = job->termination,
                                 .phong = job->shading == REFERENCE_PHONG,
+                                .stored = job->stored,
                                 .surface_scale = fabs(job->window_scale) * surface_vox},
                       .numbers = job->numbers,
-                      .mode = mode_of(r, job)};
+                      .mode = mode_of(r, job, &part)};
     memcpy(m.frame.volume.dims_vox, r->volume.dims_vox, sizeof r->volume.dims_vox);
     m.frame.blocks = blocks_of(r, job);
     stats->prepare_ms = now_ms() - begin_ms;
     status = r->ops->march(r->state, &m, rgba, stats, error);
     free(table);
     return status;
+}
+
+reference_status reference_show_stored(const reference_march_job *job, double *rgba, size_t count, vodr_error *error)
+{
+    void *entries = convert_table(job);
+    if (!entries)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
+    const kernel_table table = table_of(job, entries);
+    part_show_stored(&table, job->numbers, rgba, count);
+    free(entries);
+    return REFERENCE_OK;
 }
 
 reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits, vodr_frame *frame,

@@ -29,11 +29,15 @@ typedef enum reference_device { REFERENCE_CPU, REFERENCE_CUDA } reference_device
 typedef enum reference_voxel { REFERENCE_UINT8, REFERENCE_UINT16, REFERENCE_FLOAT32 } reference_voxel;
 
 /* x fastest, then y, then z, native byte order; the caller owns the voxels and keeps them until reference_close().
- * Floats are finite. */
+ * Floats are finite.
+ *
+ * It may be a part of a larger volume: whole_vox is the size of that one, 0 where it is whole, and origin_vox where in
+ * it the first voxel lies. */
 typedef struct reference_volume {
     int32_t dims_vox[3];
     reference_voxel type;
     const void *voxels;
+    int32_t whole_vox[3], origin_vox[3];
 } reference_volume;
 
 typedef struct reference_options {
@@ -99,6 +103,7 @@ bool reference_accel_suits(reference_accel accel, reference_blend blend);
  * o + (first + j*spacing)*d, in voxels. */
 typedef struct reference_camera {
     int32_t width_px, height_px;
+    int32_t first_px[2];                  /* x and y of the first pixel that is drawn, left and top, in the picture */
     double origin[3][3], direction[3][3]; /* [constant, per x, per y][axis] */
     double first, spacing;
     int64_t most;          /* samples on a ray, in the volume or not */
@@ -133,9 +138,21 @@ typedef struct reference_march_job {
     double termination; /* a ray ends at this opacity; above 1: never */
     reference_table table;
     double window_scale, window_offset; /* place in the window, 0 to 1 = stored*scale + offset */
+    int32_t lo_vox[3], hi_vox[3];       /* only samples in [lo, hi) of the whole volume are drawn; 0, 0, 0: all */
+    bool stored;                        /* mip: a pixel is the greatest stored value three times and 1, or four zeros */
 } reference_march_job;
 
-/* Draws premultiplied r, g, b, a a pixel, 0 to 1, rows top to bottom, into rgba[4*width_px*height_px]. */
+/* Voxels beside a box, at each of its sides that is not the whole volume's, that samples in it read. */
+int32_t reference_border_vox(const reference_march_job *job);
+
+/* What a march without `stored` gives for pixels drawn with it, rgba[4*count] in place. The maximum of several parts'
+ * pixels gives what one march of the whole does, to the bit of a CPU's. */
+reference_status reference_show_stored(const reference_march_job *job, double *rgba, size_t count, vodr_error *error);
+
+/* Draws premultiplied r, g, b, a a pixel, 0 to 1, rows top to bottom, into rgba[4*width_px*height_px]. Of a part, what
+ * the samples of [lo, hi) show, each to the bit as drawn of the whole volume: the parts' pixels, laid over one another
+ * in the order along the rays, are the whole's but for the rounding of sums. Mip has of a part no accel but none and
+ * best. */
 reference_status reference_march(reference *r, const reference_march_job *job, double *rgba, reference_stats *stats,
                                  vodr_error *error);
 

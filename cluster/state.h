@@ -1,0 +1,66 @@
+/* state.h - private to cluster/: a cluster between calls. */
+#ifndef CLUSTER_STATE_H
+#define CLUSTER_STATE_H
+
+#include "composite.h"
+#include "kd_tree.h"
+#include "subvolumes.h"
+
+/* A box that a node of this process draws, with voxels of its own. */
+typedef struct brick {
+    int32_t owner;
+    int32_t lo_vox[3], hi_vox[3];
+    int32_t border_vox;
+    size_t held_bytes;
+    void *voxels; /* to be released; NULL: not loaded */
+    reference *renderer;
+    double cpu_s; /* of the last frame */
+} brick;
+
+/* Bricks by the number of their leaf, so that the order of sight finds them. */
+typedef struct bricks {
+    int32_t count; /* leaves of the tree and more */
+    brick *brick;  /* owned; not loaded where others draw */
+} bricks;
+
+struct cluster {
+    cluster_options options;
+    cluster_source source;
+    cluster_node *node;
+    int32_t nodes;
+    subvolumes grid;
+    octree octree;
+    uint8_t *occupied; /* of each sub-volume */
+    double *weight;    /* of each sub-volume, 0 where it is empty */
+    double *measured;  /* seconds of each sub-volume in the last frame; NULL: none was drawn */
+    int64_t occupied_count;
+    sums counts, weights;
+    kd_tree tree;
+    bricks bricks;
+    cluster_share *share; /* of each node */
+    cluster_report report;
+    double scan_s;
+};
+
+/* Seconds since some moment, and of all threads of this process. */
+double cluster_now_s(void);
+double cluster_cpu_s(void);
+
+/* Whether a node of the cluster is drawn by this process. */
+static inline bool cluster_holds(const cluster *c, int32_t owner)
+{
+    return c->options.nodes > 0 || owner == c->node->rank;
+}
+
+/* The weights of the sub-volumes, by c->options.weight. */
+void weights_fill(const cluster *c, const reference_camera *camera, double *weight);
+
+/* The voxels of a leaf's box, half-open. */
+void bricks_box(const cluster *c, int32_t leaf, int32_t lo_vox[3], int32_t hi_vox[3]);
+
+/* Loads the bricks of this process for the tree, taking over those of `old` that are the same, and frees the rest of
+ * them. */
+cluster_status bricks_load(cluster *c, bricks *old, int32_t border_vox, vodr_error *error);
+void bricks_free(const cluster_source *source, bricks *b);
+
+#endif

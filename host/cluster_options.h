@@ -1,0 +1,24 @@
+/* cluster_options.h - the options of `vodr cluster` about nodes, and which go together with others. */
+#ifndef HOST_CLUSTER_OPTIONS_H
+#define HOST_CLUSTER_OPTIONS_H
+
+#include "cluster.h"
+#include "options.h"
+#include "output_set.h"
+#include "reference_options.h"
+
+/* Takes a cluster_options as its target. */
+extern const option_table option_cluster;
+
+/* best, count, radix-k, sub-volumes of 8 voxels, floats. */
+cluster_options cluster_options_default(void);
+
+/* Refuses what does not go together. */
+host_status cluster_options_check(const cluster_options *o, const reference_wish *wish, host_error *error);
+
+/* The words that the options take. */
+const char *cluster_balance_name(cluster_balance balance);
+const char *cluster_weight_name(cluster_weight weight);
+const char *cluster_composite_name(cluster_composite composite);
+
+#endif
