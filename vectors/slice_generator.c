@@ -88,6 +88,7 @@ const block_bench bench_slice_generator = {.block = VODR_BLOCK_SLICE_GENERATOR,
                                            .draw = draw,
                                            .traffic = traffic,
                                            .illegal = illegal,
+                                           .large = true,
                                            .vectors = "",
                                            .case_cycles = 400,
                                            .level_cycles = {10000, 1000000}};
