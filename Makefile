@@ -1,12 +1,13 @@
 # vodr: make builds build/vodr; make help lists the rest. All that is made lies under build/.
 #
-# BUILD, CC, CFLAGS and SANITIZE may be given: make BUILD=build/clang-O0 CC=clang CFLAGS=-O0
+# BUILD, CC, CFLAGS and SANITIZE may be given: make BUILD=build/clang-O0 CC=clang CFLAGS=-O0; COVER, of cmodel/ alone: scripts/coverage
 BUILD    ?= build
 ifeq ($(origin CC),default)
 CC       := gcc
 endif
 CFLAGS   ?= -O3
 SANITIZE ?=
+COVER    ?=
 
 # Positions and tables are made in floating point: contraction would let compilers differ in their last bit.
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
@@ -24,7 +25,7 @@ CUDA_HOME := $(patsubst %/bin/nvcc,%,$(realpath $(NVCC)))
 CUDA_LIBRARIES := $(if $(NVCC),-L$(CUDA_HOME)/lib64 -lcudart_static -lstdc++ -ldl -lrt)
 
 comma := ,
-LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
+LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread $(if $(COVER),--coverage)
 
 HW       := hw/parameters.txt hw/registers.txt
 MACHINES := $(sort $(wildcard hw/machines/*.txt))
@@ -50,7 +51,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -96,6 +97,16 @@ synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and writ
 	@scripts/synth $(BUILD)
 	@scripts/tables $(BUILD) synthesis
 	@cat $(BUILD)/tables/synthesis
+
+coverage: ## what the tests reach, and docs/table-coverage.md again; fails below what is asked (ten minutes)
+	@scripts/deps coverage
+	@$(MAKE) -s $(PARALLEL) BUILD=$(BUILD)/coverage CFLAGS=-O1 COVER='-O0 --coverage -fprofile-update=atomic' NVCC= \
+	    $(addprefix $(BUILD)/coverage/,vodr tests/digest tests/lockstep/lockstep) \
+	    $(patsubst $(BUILD)/%,$(BUILD)/coverage/%,$(filter $(BUILD)/tests/test_%,$(TESTS)))
+	@scripts/coverage $(BUILD)/coverage
+
+verification: ## gather all tables of what was verified into docs/verification.md
+	@scripts/verification >docs/verification.md.new && mv docs/verification.md.new docs/verification.md
 
 bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
 	@scripts/deps rtl
@@ -197,6 +208,7 @@ $(BUILD)/libvodr.a: $(CMODEL)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/cmodel/%.o: override CFLAGS += $(COVER)
 $(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/reference/cpu_avx2.o: CFLAGS += -mavx2
