@@ -64,7 +64,7 @@ demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in bu
 	@$(MAKE) -s $(PARALLEL) all $(BUILD)/bench/table_vodr
 	@scripts/demo $(BUILD)
 
-tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep
+tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep $(BUILD)/tests/mutation/mutants
 
 check: ## run every test; the last line is `N passed, N failed`
 	@scripts/deps check fuzz
@@ -246,6 +246,12 @@ $(LOCKSTEP): STRICT += $(WHERE)
 
 $(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
+
+MUTATION := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/mutation/*.c))
+$(MUTATION): STRICT += $(WHERE)
+
+$(BUILD)/tests/mutation/mutants: $(MUTATION) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib

@@ -28,6 +28,9 @@ typedef struct rtl_source {
     const char *file;  /* the module's; NULL: ours */
     bool trace;        /* one that writes waveforms */
     rtl_found *found;  /* the caller's; NULL: it is looked for each time */
+    /* An input beside ports and registers, which is held at `selected`; NULL: there is none. */
+    const char *selector;
+    uint64_t selected;
 } rtl_source;
 
 typedef struct rtl_library {
