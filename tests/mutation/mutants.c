@@ -1,6 +1,6 @@
 /* mutants.c - runs mutants of a block, all in one model and chosen by an input, against its kept vectors, then in
  * lock-step with the block in C (docs/mutation.md).
- *   mutants VECTORS MODULE.v FIRST LAST TRANSACTIONS
+ *   mutants VECTORS MODULE.v TRANSACTIONS N...    in lock-step so many transactions, for what vectors do not kill
  * MODULE.v is the block of the vectors' machine, with an input `mutant` beside its ports; 0 chooses none.
  *
  * Prints a line each: `N vectors LINE PORT`, `N lock-step SEED CYCLE PORT` or `N survives`. What is missing, or late,
@@ -135,32 +135,35 @@ static bool begin(run *r, const char *vectors)
     return r->vectors != NULL;
 }
 
-static int run_all(run *r, uint64_t first, uint64_t last)
+/* The block itself has to pass before any mutant is judged. */
+static bool passes_unmutated(run *r)
 {
     verdict outcome = check(r, 0);
     if (outcome == KILLED)
         rtl_fail(&r->error, RTL_DIFFERS, "%s differs without any mutation", r->source.file);
-    for (uint64_t mutant = first; outcome != BROKEN && mutant <= last; mutant++) {
-        if (mutant == first && outcome != SURVIVES)
-            return FAILED;
-        outcome = check(r, mutant);
-    }
-    return outcome == BROKEN ? FAILED : 0;
+    return outcome == SURVIVES;
 }
 
 int main(int argc, char **argv)
 {
-    uint64_t first, last;
+    enum { MODULE = 2, TRANSACTIONS, MUTANTS };
+    uint64_t mutant;
     run *r = calloc(1, sizeof *r);
-    if (!r || argc != 6 || !number(argv[3], 65535, &first) || !number(argv[4], 65535, &last) ||
-        !number(argv[5], UINT64_MAX, &r->transactions)) {
-        fprintf(stderr, "usage: mutants VECTORS MODULE.v FIRST LAST TRANSACTIONS (scripts/mutation runs it)\n");
+    bool good = r && argc >= MUTANTS && number(argv[TRANSACTIONS], UINT64_MAX, &r->transactions);
+    for (int i = MUTANTS; good && i < argc; i++)
+        good = number(argv[i], 4095, &mutant);
+    if (!good) {
+        fprintf(stderr, "usage: mutants VECTORS MODULE.v TRANSACTIONS N... (scripts/mutation runs it)\n");
         free(r);
         return USAGE;
     }
-    r->source =
-        (rtl_source){.root = VODR_ROOT, .build = VODR_BUILD, .file = argv[2], .found = &r->found, .selector = "mutant"};
-    int status = begin(r, argv[1]) ? run_all(r, first, last) : USAGE;
+    r->source = (rtl_source){
+        .root = VODR_ROOT, .build = VODR_BUILD, .file = argv[MODULE], .found = &r->found, .selector = "mutant"};
+    int status = !begin(r, argv[1]) ? USAGE : passes_unmutated(r) ? 0 : FAILED;
+    for (int i = MUTANTS; !status && i < argc; i++) {
+        number(argv[i], 4095, &mutant);
+        status = check(r, mutant) == BROKEN ? FAILED : 0;
+    }
     if (status)
         fprintf(stderr, "mutants: %s\n", r->error.text);
     vector_file_free(r->vectors);

@@ -8,7 +8,7 @@
 #include "error.h"
 #include "rng.h"
 
-enum { MOST_PORTS = 80, RESET_CYCLES = 2 };
+enum { MOST_PORTS = 80 };
 
 /* Ports of one kind, and where their values lie in a row of bytes. */
 typedef struct row {
@@ -296,13 +296,13 @@ bool vector_file_replay(const vector_file *f, const rtl_library *model, vector_d
     if (!clk || !rst || !bind(&f->inputs, model, &inputs, error) || !bind(&f->outputs, model, &outputs, error) ||
         !bind(&f->registers, model, &registers, error))
         return false;
+    /* The first eval() sees no edge. */
+    model->model.eval(model->model.state);
     for (uint64_t i = 0, next = 0; i < f->cycle_count; i++) {
         const cycle *c = &f->cycles[i];
         if (next < f->case_count && f->cases[next].first == i) {
             *(uint8_t *)rst->data = 1;
             drive(&registers, f->cases[next].registers);
-            for (int t = 0; t < RESET_CYCLES; t++)
-                tick(model, clk->data);
             if (f->table.count && !write_table(f, &f->cases[next], model, clk->data, error))
                 return false;
             next++;

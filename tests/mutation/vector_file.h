@@ -1,5 +1,6 @@
 /* vector_file.h - test vectors (docs/vectors.md) in memory, to be replayed against many models of a module, and the
- * replay. It does what vectors/bench.v does, with no block in C either. */
+ * replay. It does what vectors/bench.v does, with no block in C either; but a reset lasts the one cycle that vectors show,
+ * after whatever the case before has left. */
 #ifndef TESTS_VECTOR_FILE_H
 #define TESTS_VECTOR_FILE_H
 
