@@ -48,7 +48,7 @@ static verdict against_vectors(run *r, const char *module)
     }
     const uint16_t selected = (uint16_t)r->source.selected;
     memcpy(selector->data, &selected, sizeof selected);
-    bool replayed = vector_file_replay(r->vectors, &model, &first, &r->error);
+    bool replayed = vector_file_replay(r->vectors, &model, selected == 0, &first, &r->error);
     rtl_library_close(&model);
     if (first.line)
         printf("%" PRIu64 " vectors %" PRIu64 " %s\n", r->source.selected, first.line, first.name);

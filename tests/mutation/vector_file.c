@@ -254,6 +254,18 @@ static const char *differs(const bound_row *b, const cycle *c)
     return NULL;
 }
 
+/* The first of the outputs that say whether the rules of rtl/rules/ hold, if there is one that does not. */
+static const char *broken_rule(const rtl_library *model)
+{
+    for (int32_t i = 0; i < model->model.port_count; i++) {
+        const vodr_rtl_port *p = &model->model.ports[i];
+        size_t length = strlen(p->name);
+        if (p->output && length >= 5 && strcmp(p->name + length - 5, "rules") == 0 && !*(const uint8_t *)p->data)
+            return p->name;
+    }
+    return NULL;
+}
+
 static void tick(const rtl_library *model, uint8_t *clk)
 {
     for (int level = 1; level >= 0; level--) {
@@ -288,7 +300,8 @@ static bool write_table(const vector_file *f, const vector_case *c, const rtl_li
     return true;
 }
 
-bool vector_file_replay(const vector_file *f, const rtl_library *model, vector_difference *first, vodr_error *error)
+bool vector_file_replay(const vector_file *f, const rtl_library *model, bool with_rules, vector_difference *first,
+                        vodr_error *error)
 {
     bound_row inputs, outputs, registers;
     const vodr_rtl_port *clk = rtl_library_port(model, "clk"), *rst = rtl_library_port(model, "rst");
@@ -308,8 +321,10 @@ bool vector_file_replay(const vector_file *f, const rtl_library *model, vector_d
             next++;
         }
         drive(&inputs, c->inputs);
+        model->model.eval(model->model.state);
+        const char *name = with_rules ? broken_rule(model) : NULL;
         tick(model, clk->data);
-        const char *name = differs(&outputs, c);
+        name = name ? name : differs(&outputs, c);
         if (name) {
             *first = (vector_difference){c->line, name};
             return true;
