@@ -49,7 +49,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth mutation clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -95,6 +95,13 @@ synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and writ
 	@scripts/synth $(BUILD)
 	@scripts/tables $(BUILD) synthesis
 	@cat $(BUILD)/tables/synthesis
+
+mutation: $(BUILD)/gen/vodr_hw.vh ## judge mutants of every block by vectors, lock-step and a SAT solver, and write docs/table-mutation.md again (an hour)
+	@scripts/deps rtl check
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/tests/mutation/mutants
+	@scripts/mutation $(BUILD)
+	@scripts/tables $(BUILD) mutation
+	@cat $(BUILD)/tables/mutation
 
 bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
 	@scripts/deps rtl
@@ -158,7 +165,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size rtl synthesis table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl synthesis mutation table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles

@@ -26,11 +26,16 @@ static void draw(rng *random, vodr_machine *m)
     m->write_policy = rng_one_in(random, 3) ? VODR_WRITE_POLICY_THROUGH : VODR_WRITE_POLICY_BACK;
 }
 
-/* Frames as long as they can be, so that numbers of lines have all their bits. */
+/* Frames as long as they can be, so that numbers of lines have all their bits, and large ones. */
 static void look(rng *random, const int32_t dims_vox[3], vodr_view *view)
 {
-    enum { SHORT_PX = 8 };
+    enum { SHORT_PX = 8, LARGE_PX = 2048 };
     (void)dims_vox;
+    if (rng_one_in(random, 4)) {
+        view->width_px = (int32_t)rng_int(random, 1, LARGE_PX);
+        view->height_px = (int32_t)rng_int(random, 1, LARGE_PX);
+        return;
+    }
     if (!rng_one_in(random, 4))
         return;
     bool wide = rng_one_in(random, 2);

@@ -1,4 +1,4 @@
-// What an alpha blender can count on: no state and no traffic of a machine breaks it (docs/mutation.md).
+// What an alpha blender can count on: no state and no traffic of a machine breaks it (docs/table-mutation.md).
 function premultiplied(input [PIXEL-1:0] pixel); // no channel above alpha; in mip nothing beyond a density of 12 bits
     premultiplied = blend == `VODR_BLEND_MIP ? pixel >> 17 == 0 && pixel[15:12] == 0
                     : pixel[0 +: FB_BITS] <= pixel[3*FB_BITS +: FB_BITS] && pixel[FB_BITS +: FB_BITS] <= pixel[3*FB_BITS +: FB_BITS] &&

@@ -1,5 +1,5 @@
 /* mutants.c - runs mutants of a block, all in one model and chosen by an input, against its kept vectors, then in
- * lock-step with the block in C (docs/mutation.md).
+ * lock-step with the block in C (docs/table-mutation.md).
  *   mutants VECTORS MODULE.v TRANSACTIONS N...    in lock-step so many transactions, for what vectors do not kill
  * MODULE.v is the block of the vectors' machine, with an input `mutant` beside its ports; 0 chooses none.
  *
