@@ -71,7 +71,7 @@ static verdict episode(run *r, const block_bench *what, uint64_t seed, uint64_t 
         uint64_t most = *count < EPISODE_TRANSACTIONS ? *count : EPISODE_TRANSACTIONS;
         what->traffic(b, most);
         *count -= most - b->left;
-        outcome = lockstep_end(pair) ? SURVIVES : KILLED;
+        outcome = pair->first.found ? KILLED : SURVIVES;
         if (outcome == KILLED)
             printf("%" PRIu64 " lock-step %" PRIu64 " %" PRIu64 " %s\n", r->source.selected, seed, b->cycles,
                    pair->first.field->name);
