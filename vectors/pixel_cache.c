@@ -95,9 +95,24 @@ static void draw_pattern(bench *b, texture_side *t)
         draw_thrash(b, t);
 }
 
-/* The pixel whose coordinates differ in one bit. */
+/* The first pixel of the line whose number differs in one bit, of lines row by row. */
+static void next_line_twin(bench *b, texture_side *t, const fb_layout *layout)
+{
+    int64_t number = line_number(layout, t->port.x, t->port.y) ^ (int64_t)1 << rng_int(&b->random, 0, 25);
+    if (number >= layout->lines)
+        return;
+    t->port.x = (int32_t)(number % layout->columns) * b->machine.line_px.width;
+    t->port.y = (int32_t)(number / layout->columns) * b->machine.line_px.height;
+}
+
+/* The pixel whose coordinates, or whose line's number, differ in one bit. */
 static void next_twin(bench *b, texture_side *t)
 {
+    const fb_layout layout = fb_layout_of(&b->machine, b->scene.view.width_px, b->scene.view.height_px);
+    if (!layout.tiled && rng_one_in(&b->random, 2)) {
+        next_line_twin(b, t, &layout);
+        return;
+    }
     int32_t bit = 1 << rng_int(&b->random, 0, 13);
     bool across = rng_one_in(&b->random, 2);
     int32_t x = across ? t->port.x ^ bit : t->port.x, y = across ? t->port.y : t->port.y ^ bit;
@@ -214,7 +229,7 @@ static void set_before(bench *b, const texture_side *t, report_port before[BLOCK
 static uint64_t draw_length(bench *b, uint64_t transactions)
 {
     enum { FEW = 4, SOME = 64 };
-    int64_t most = rng_one_in(&b->random, 3) ? FEW : rng_one_in(&b->random, 2) ? SOME : LONGEST_FRAME;
+    int64_t most = rng_one_in(&b->random, 6) ? FEW : rng_one_in(&b->random, 6) ? SOME : LONGEST_FRAME;
     return (uint64_t)rng_int(&b->random, 1, (uint64_t)most < transactions ? most : (int64_t)transactions);
 }
 
