@@ -51,7 +51,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth mutation clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -66,7 +66,7 @@ demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in bu
 	@$(MAKE) -s $(PARALLEL) all $(BUILD)/bench/table_vodr
 	@scripts/demo $(BUILD)
 
-tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep
+tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep $(BUILD)/tests/mutation/mutants
 
 check: ## run every test; the last line is `N passed, N failed`
 	@scripts/deps check fuzz
@@ -107,6 +107,13 @@ coverage: ## what the tests reach, and docs/table-coverage.md again; fails below
 
 verification: ## gather all tables of what was verified into docs/verification.md
 	@scripts/verification >docs/verification.md.new && mv docs/verification.md.new docs/verification.md
+
+mutation: $(BUILD)/gen/vodr_hw.vh ## judge mutants of every block by vectors, lock-step and a SAT solver, and write docs/table-mutation.md again (an hour)
+	@scripts/deps rtl check
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/tests/mutation/mutants
+	@scripts/mutation $(BUILD)
+	@scripts/tables $(BUILD) mutation
+	@cat $(BUILD)/tables/mutation
 
 bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
 	@scripts/deps rtl
@@ -170,7 +177,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size rtl synthesis table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl synthesis mutation table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
@@ -259,6 +266,12 @@ $(LOCKSTEP): STRICT += $(WHERE)
 
 $(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
+
+MUTATION := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/mutation/*.c))
+$(MUTATION): STRICT += $(WHERE)
+
+$(BUILD)/tests/mutation/mutants: $(MUTATION) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib

@@ -47,15 +47,15 @@ vodr_status bench_set(vodr_machine *machine, const char *settings, vodr_error *e
 
 /* ---- the scene ---- */
 
-static bool draw_volume(bench *b, bool bricks)
+static bool draw_volume(bench *b, int32_t longest_vox, bool bricks)
 {
     rng *r = &b->random;
     vodr_volume *v = &b->scene.input;
     int64_t largest = bricks ? BRICKS_VOX : rng_one_in(r, 2) ? LARGEST_VOX : LARGEST_VOX / 2;
     for (int c = 0; c < 3; c++)
         v->dims_vox[c] = (int32_t)rng_int(r, rng_one_in(r, 6) ? 1 : largest / 2, largest);
-    if (!bricks && rng_one_in(r, 12))
-        v->dims_vox[rng_int(r, 0, 2)] = (int32_t)rng_int(r, LARGEST_VOX, LONGEST_VOX);
+    if (!bricks && rng_one_in(r, 5))
+        v->dims_vox[rng_int(r, 0, 2)] = (int32_t)rng_int(r, LARGEST_VOX, longest_vox);
     v->voxel_bytes = density_bytes(&b->machine);
     size_t voxels = (size_t)v->dims_vox[0] * (size_t)v->dims_vox[1] * (size_t)v->dims_vox[2];
     v->voxels = b->scene.voxels = bricks ? malloc(voxels * (size_t)v->voxel_bytes) : NULL;
@@ -192,7 +192,7 @@ vodr_status bench_open_large(bench *b, const block_bench *what, const vodr_machi
         what->draw(&b->random, &b->machine);
     if (!bricks)
         draw_large_volume(b);
-    if ((bricks && !draw_volume(b, true)) || !draw_table(b))
+    if ((bricks && !draw_volume(b, 0, true)) || !draw_table(b))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a volume and a table");
     b->scene.view = views_large(&b->random, b->scene.input.dims_vox);
     vodr_status status = bench_set_up(b, error);
@@ -207,7 +207,8 @@ vodr_status bench_open(bench *b, const block_bench *what, const vodr_machine *ma
     *b = (bench){.random = {seed}, .machine = *machine};
     if (what->draw)
         what->draw(&b->random, &b->machine);
-    if (!draw_volume(b, what->block == VODR_BLOCK_FRAME_BUFFER) || !draw_table(b))
+    if (!draw_volume(b, what->longest_vox ? what->longest_vox : LONGEST_VOX, what->block == VODR_BLOCK_FRAME_BUFFER) ||
+        !draw_table(b))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a volume and a table");
     b->scene.view = views_any(&b->random, b->scene.input.dims_vox);
     vodr_view other = b->scene.view;

@@ -49,6 +49,8 @@ typedef struct block_bench {
     const char *const *machines;
     /* Draws what it has as registers. NULL: nothing. */
     void (*draw)(rng *random, vodr_machine *machine);
+    /* Of a volume now and then an edge is up to so long; 0: as long as for all. */
+    int32_t longest_vox;
     /* Draws another view of a volume than views_any() did, which is taken if it is legal. NULL: none. */
     void (*look)(rng *random, const int32_t dims_vox[3], vodr_view *view);
     /* Clocks the block until that many transactions are done, or bench_differs(). */

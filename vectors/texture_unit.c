@@ -406,6 +406,7 @@ static const char *illegal(const bench *b, void *rules, const void *inputs, cons
 const block_bench bench_texture_unit = {.block = VODR_BLOCK_TEXTURE_UNIT,
                                         .machines = machines,
                                         .draw = draw,
+                                        .longest_vox = 8192,
                                         .traffic = traffic,
                                         .illegal = illegal,
                                         .rules_bytes = sizeof(texture_rules),
