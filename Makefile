@@ -1,12 +1,13 @@
 # vodr: make builds build/vodr; make help lists the rest. All that is made lies under build/.
 #
-# BUILD, CC, CFLAGS and SANITIZE may be given: make BUILD=build/clang-O0 CC=clang CFLAGS=-O0
+# BUILD, CC, CFLAGS and SANITIZE may be given: make BUILD=build/clang-O0 CC=clang CFLAGS=-O0; COVER, of cmodel/ alone: scripts/coverage
 BUILD    ?= build
 ifeq ($(origin CC),default)
 CC       := gcc
 endif
 CFLAGS   ?= -O3
 SANITIZE ?=
+COVER    ?=
 
 # Positions and tables are made in floating point: contraction would let compilers differ in their last bit.
 # No vector crosses a call that is not inlined, so gcc's notes on how vectors are passed (-Wpsabi) mean nothing here.
@@ -29,7 +30,7 @@ comma := ,
 MPICC    ?= $(shell command -v mpicc)
 MPI_FLAGS := $(if $(MPICC),$(patsubst -I%,-isystem %,$(shell $(MPICC) --showme:compile)))
 
-LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread
+LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread $(if $(COVER),--coverage)
 
 HW       := hw/parameters.txt hw/registers.txt
 MACHINES := $(sort $(wildcard hw/machines/*.txt))
@@ -59,7 +60,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth mutation clean
 
 all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -74,7 +75,7 @@ demo: ## draw a CT head: the picture, its statistics, a report and Table 1 in bu
 	@$(MAKE) -s $(PARALLEL) all $(BUILD)/bench/table_vodr
 	@scripts/demo $(BUILD)
 
-tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep
+tests: $(TESTS) $(BENCHES) $(BUILD)/tests/lockstep/lockstep $(BUILD)/tests/mutation/mutants
 
 check: ## run every test; the last line is `N passed, N failed`
 	@scripts/deps check fuzz
@@ -105,6 +106,23 @@ synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and writ
 	@scripts/synth $(BUILD)
 	@scripts/tables $(BUILD) synthesis
 	@cat $(BUILD)/tables/synthesis
+
+coverage: ## what the tests reach, and docs/table-coverage.md again; fails below what is asked (ten minutes)
+	@scripts/deps coverage
+	@$(MAKE) -s $(PARALLEL) BUILD=$(BUILD)/coverage CFLAGS=-O1 COVER='-O0 --coverage -fprofile-update=atomic' NVCC= \
+	    $(addprefix $(BUILD)/coverage/,vodr tests/digest tests/lockstep/lockstep) \
+	    $(patsubst $(BUILD)/%,$(BUILD)/coverage/%,$(filter $(BUILD)/tests/test_%,$(TESTS)))
+	@scripts/coverage $(BUILD)/coverage
+
+verification: ## gather all tables of what was verified into docs/verification.md
+	@scripts/verification >docs/verification.md.new && mv docs/verification.md.new docs/verification.md
+
+mutation: $(BUILD)/gen/vodr_hw.vh ## judge mutants of every block by vectors, lock-step and a SAT solver, and write docs/table-mutation.md again (an hour)
+	@scripts/deps rtl check
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/tests/mutation/mutants
+	@scripts/mutation $(BUILD)
+	@scripts/tables $(BUILD) mutation
+	@cat $(BUILD)/tables/mutation
 
 bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
 	@scripts/deps rtl
@@ -168,7 +186,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size rtl synthesis table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl synthesis mutation table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
@@ -210,6 +228,7 @@ $(BUILD)/libvodr.a: $(CMODEL)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(BUILD)/cmodel/%.o: override CFLAGS += $(COVER)
 $(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/reference/cpu_avx2.o: CFLAGS += -mavx2
@@ -270,6 +289,12 @@ $(LOCKSTEP): STRICT += $(WHERE)
 
 $(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
+
+MUTATION := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/mutation/*.c))
+$(MUTATION): STRICT += $(WHERE)
+
+$(BUILD)/tests/mutation/mutants: $(MUTATION) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib

@@ -62,7 +62,6 @@ int32_t alpha_blender_run(const alpha_blender *b, const vodr_rgba *src, int32_t 
     switch (b->mode) {
     case VODR_BLEND_OVER: return b->full == 255 ? run_over(255, src, count, pixel) : run_over(65535, src, count, pixel);
     case VODR_BLEND_UNDER: return run_under(b->full, src, count, pixel, terminated);
-    case VODR_BLEND_MIP: break;
+    default: return run_mip(src, count, pixel);
     }
-    return run_mip(src, count, pixel);
 }

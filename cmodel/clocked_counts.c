@@ -123,7 +123,7 @@ static void move_pixels(clocked_counts *c, const block_outs *before, const block
     if (cache->write.valid)
         c->sums->n.fb_write_bytes += (uint64_t)cache->write.bytes;
     c->sums->n.writebacks += cache->write.valid && c->machine->write_policy == VODR_WRITE_POLICY_BACK;
-    if (cache->pixel.valid && c->last < c->now + c->machine->blend_cycles - 1)
+    if (cache->pixel.valid) /* no blend is over as late */
         c->last = c->now + c->machine->blend_cycles - 1;
 }
 

@@ -15,10 +15,11 @@ static cache_blend *blend_at(cache_state *s, int64_t number)
     return &s->blends[number & s->blend_mask];
 }
 
-/* Whether a blend of a pixel will not be over in `cycle`. */
+/* Whether a blend of a pixel will not be over in `cycle`. No two were read in one cycle, so those that are not fit the
+ * ring. */
 static bool blending(cache_state *s, int32_t x, int32_t y, int64_t cycle)
 {
-    for (int64_t n = s->reads - 1; n >= 0 && n >= s->reads - s->machine->blend_cycles; n--) {
+    for (int64_t n = s->reads - 1; n >= 0; n--) {
         const cache_blend *b = blend_at(s, n);
         if (b->cycle + s->machine->blend_cycles <= cycle)
             return false;

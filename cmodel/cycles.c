@@ -110,7 +110,7 @@ static void work_visit(cycles *c)
 void cycles_visit(cycles *c, const cycle_visit *v)
 {
     visit_state *next = visit_at(c, c->announced + 1);
-    *next = (visit_state){.visit = *v, .divided = CYCLE_UNKNOWN, .loaded = CYCLE_UNKNOWN, .drained = CYCLE_UNKNOWN};
+    *next = (visit_state){.visit = *v, .loaded = CYCLE_UNKNOWN, .drained = CYCLE_UNKNOWN};
     next->visit.load_address += c->texture_base;
     c->announced++;
     cycles_divide(c, c->announced);

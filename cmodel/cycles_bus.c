@@ -6,8 +6,6 @@ void cycles_settle_loads(cycles *c)
 {
     while (c->load_visit <= c->announced && visit_at(c, c->load_visit)->visit.load_bytes == 0 && !c->load_bytes) {
         visit_state *v = visit_at(c, c->load_visit);
-        if (v->divided == CYCLE_UNKNOWN)
-            return;
         v->loaded = v->divided;
         c->load_visit++;
     }
@@ -28,8 +26,6 @@ static int64_t load_raised(cycles *c)
     if (c->load_bytes)
         return c->load_grant;
     int64_t before = c->load_visit - (c->m->double_buffer ? 2 : 1), raised = max64(v->divided, c->load_grant) + 1;
-    if (v->divided == CYCLE_UNKNOWN)
-        return CYCLE_UNKNOWN;
     if (before < 0)
         return raised;
     int64_t drained = visit_at(c, before)->drained;

@@ -73,7 +73,7 @@ static void blend(fused_painter *p, const band_row *row, int32_t from)
         else
             k->under16(colour16, row->count, pixels16, batch->flag);
         break;
-    case VODR_BLEND_MIP: k->mip(colour8, row->count, pixels8, batch->flag);
+    default: k->mip(colour8, row->count, pixels8, batch->flag);
     }
 }
 

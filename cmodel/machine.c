@@ -62,8 +62,8 @@ static bool parse_choice(const vodr_parameter *p, const char *text, int64_t *val
 {
     for (int64_t i = 0; p->choices[i]; i++)
         if (strcmp(p->choices[i], text) == 0) {
-            *value = i;
-            return p->kind == VODR_KIND_WORDS || parse_integer(text, value);
+            *value = p->kind == VODR_KIND_WORDS ? i : strtoll(text, NULL, 10);
+            return true;
         }
     return false;
 }
@@ -78,7 +78,7 @@ static bool parse_value(const vodr_parameter *p, const char *text, vodr_machine 
     case VODR_KIND_WORDS:
     case VODR_KIND_NUMBERS: ok = parse_choice(p, text, &value); break;
     case VODR_KIND_RANGE: ok = parse_integer(text, &value) && value >= p->lo && value <= p->hi; break;
-    case VODR_KIND_POW2:
+    default: /* VODR_KIND_POW2 */
         ok = parse_integer(text, &value) && value >= p->lo && value <= p->hi && is_power_of_two(value);
         break;
     }

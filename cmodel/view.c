@@ -17,11 +17,13 @@ static bool below(int64_t value, int64_t limit)
     return value > -limit && value < limit;
 }
 
-/* a*b + c, false when it does not fit 62 bits and a sign. */
+/* a*b + c, false when it does not fit 62 bits and a sign, as c does. */
 static bool multiply_add(int64_t a, int64_t b, int64_t c, int64_t *result)
 {
-    return !__builtin_mul_overflow(a, b, result) && below(*result, NUMERATOR_LIMIT) &&
-           !__builtin_add_overflow(*result, c, result) && below(*result, NUMERATOR_LIMIT);
+    if (__builtin_mul_overflow(a, b, result) || !below(*result, NUMERATOR_LIMIT))
+        return false;
+    *result += c;
+    return below(*result, NUMERATOR_LIMIT);
 }
 
 /* The numerator of component c at a pixel of a slice, checked term by term. */

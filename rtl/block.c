@@ -189,7 +189,7 @@ static bool add_wire(rtl_block *b, const vodr_rtl_port *p)
     return false;
 }
 
-static rtl_status connect(rtl_block *b, const rtl_registers *registers, vodr_error *error)
+static rtl_status connect(rtl_block *b, const rtl_source *source, const rtl_registers *registers, vodr_error *error)
 {
     rtl_status status = RTL_OK;
     b->clk = rtl_library_port(&b->library, "clk")->data;
@@ -198,7 +198,9 @@ static rtl_status connect(rtl_block *b, const rtl_registers *registers, vodr_err
         const vodr_rtl_port *p = &b->library.model.ports[i];
         bool other = p->output || p->data == b->clk || p->data == b->rst || is_one_of(p->name, table_ports) ||
                      is_one_of(p->name, memory_inputs);
-        if (!add_wire(b, p) && !other)
+        if (source->selector && strcmp(p->name, source->selector) == 0)
+            put(p->data, p->width_bits, source->selected);
+        else if (!add_wire(b, p) && !other)
             status = set_register(b, p, registers, error);
     }
     return status;
@@ -283,7 +285,7 @@ rtl_status rtl_block_open(rtl_block *b, const rtl_source *source, vodr_block blo
         return rtl_fail(error, RTL_NO_MEMORY, "no memory for the registers of %s", signals_of(block)->name);
     rtl_status status = rtl_library_open(source, block, registers, &b->library, error);
     if (status == RTL_OK)
-        status = connect(b, registers, error);
+        status = connect(b, source, registers, error);
     if (status == RTL_OK && (block == VODR_BLOCK_FRAME_BUFFER || block == RTL_TOP))
         status = connect_memory(b, setup, error);
     free(registers);

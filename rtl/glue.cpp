@@ -2,11 +2,18 @@
  * beside a "model.h" of its own that names the class, `model_class`, and lists its ports, MODEL_PORTS(PORT). */
 #include "vodr_rtl.h"
 
+#include <cstring>
 #include <new>
 #include <vector>
 
 #include "model.h"
 #include "verilated.h"
+#ifdef MODEL_COVERAGE
+#include <cstdlib>
+#include <unistd.h>
+
+#include "verilated_cov.h"
+#endif
 #ifdef MODEL_TRACE
 #include "verilated_fst_c.h"
 #endif
@@ -14,13 +21,25 @@
 namespace
 {
 
+/* Registers hold anything before the reset; Verilator takes a seed of 0 for none. */
+struct seeded_context : VerilatedContext {
+    explicit seeded_context(uint32_t seed)
+    {
+        randReset(2);
+        randSeed(static_cast<int>(seed % 0x7FFFFFFF) + 1);
+    }
+};
+
 struct model {
-    VerilatedContext context;
+    seeded_context context;
     model_class module{&context};
     std::vector<vodr_rtl_port> ports;
 #ifdef MODEL_TRACE
     VerilatedFstC waveform;
 #endif
+    explicit model(uint32_t seed) : context(seed)
+    {
+    }
     ~model()
     {
         module.final();
@@ -32,9 +51,26 @@ void eval(void *state)
     static_cast<model *>(state)->module.eval();
 }
 
+#ifdef MODEL_COVERAGE
+/* What the model covered, in a file of its own in the folder that was named when the library was made. */
+void write_coverage(model *m)
+{
+    char path[] = MODEL_COVERAGE "/XXXXXX";
+    int file = mkstemp(path);
+    if (file < 0)
+        return;
+    close(file);
+    m->context.coveragep()->write(path);
+}
+#endif
+
 void finish(void *state)
 {
-    delete static_cast<model *>(state);
+    model *m = static_cast<model *>(state);
+#ifdef MODEL_COVERAGE
+    write_coverage(m);
+#endif
+    delete m;
 }
 
 #ifdef MODEL_TRACE
@@ -54,13 +90,16 @@ void dump(void *state, uint64_t time)
 
 } // namespace
 
-extern "C" bool vodr_rtl_open(vodr_rtl_model *out)
+extern "C" bool vodr_rtl_open(vodr_rtl_model *out, uint32_t seed)
 try {
-    model *m = new model;
+    model *m = new model(seed);
 #ifdef MODEL_TRACE
     m->context.traceEverOn(true);
 #endif
-#define PORT(name, high, is_output) m->ports.push_back({#name, (high) + 1, is_output, &m->module.name});
+#define PORT(name, high, is_output)                                                                                    \
+    m->ports.push_back({#name, (high) + 1, is_output, &m->module.name});                                               \
+    if (!(is_output))                                                                                                  \
+        std::memset(&m->module.name, 0, sizeof m->module.name);
     MODEL_PORTS(PORT)
 #undef PORT
     *out = vodr_rtl_model{};

@@ -237,7 +237,7 @@ static rtl_status check_ports(const rtl_library *l, vodr_block block, const rtl_
     return status;
 }
 
-static rtl_status load(const char *path, rtl_library *l, vodr_error *error)
+static rtl_status load(const char *path, uint32_t seed, rtl_library *l, vodr_error *error)
 {
     vodr_rtl_open_function *open = NULL;
     l->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -245,7 +245,7 @@ static rtl_status load(const char *path, rtl_library *l, vodr_error *error)
     memcpy(&open, &symbol, sizeof open); /* a pointer to data is no pointer to a function, but here it is */
     if (!open)
         return rtl_fail(error, RTL_ENVIRONMENT, "%s cannot be loaded: %s", path, dlerror());
-    if (!open(&l->model))
+    if (!open(&l->model, seed))
         return rtl_fail(error, RTL_NO_MEMORY, "no memory for the model of %s", l->file);
     return RTL_OK;
 }
@@ -257,7 +257,7 @@ static rtl_status open_module(const rtl_source *source, const char *module, cons
     *l = (rtl_library){0};
     snprintf(l->file, sizeof l->file, "%s", source->file ? source->file : strrchr(file, '/') + 1);
     rtl_status status = build(source, module, file, registers, path, error);
-    return status == RTL_OK ? load(path, l, error) : status;
+    return status == RTL_OK ? load(path, source->seed, l, error) : status;
 }
 
 rtl_status rtl_library_open(const rtl_source *source, vodr_block block, const rtl_registers *registers, rtl_library *l,

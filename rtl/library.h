@@ -27,7 +27,11 @@ typedef struct rtl_source {
     const char *build; /* where it is built: its gen/ has the header that hw/ gives, its rtl/ keeps libraries */
     const char *file;  /* the module's; NULL: ours */
     bool trace;        /* one that writes waveforms */
+    uint32_t seed;     /* of what its registers hold before the reset */
     rtl_found *found;  /* the caller's; NULL: it is looked for each time */
+    /* An input beside ports and registers, which is held at `selected`; NULL: there is none. */
+    const char *selector;
+    uint64_t selected;
 } rtl_source;
 
 typedef struct rtl_library {

@@ -37,8 +37,9 @@ typedef struct vodr_rtl_model {
     void (*finish)(void *state); /* frees the model, and closes its waveform */
 } vodr_rtl_model;
 
-/* A model before its first eval(), all inputs 0; false when there is no memory. Any number can be made. */
-typedef bool vodr_rtl_open_function(vodr_rtl_model *model);
+/* A model before its first eval(), all inputs 0; false when there is no memory. Any number can be made. What registers
+ * and memories hold then is anything, from the seed: a reset that is missing shows. */
+typedef bool vodr_rtl_open_function(vodr_rtl_model *model, uint32_t seed);
 #define VODR_RTL_OPEN "vodr_rtl_open"
 
 #ifdef __cplusplus

@@ -63,6 +63,8 @@ fault pixel_cache cache_tags.v 's/ages\[w\*WAY_BITS +: WAY_BITS\] == LAST/ages[w
 fault pixel_cache pixel_cache.v "s/dirty\[known_at\] <= 1'b1/dirty[known_at] <= 1'b0/"
 fault pixel_cache cache_blends.v 's/pixels\[i\] == asked/pixels[i] == ~asked/' --set blend_cycles=24
 fault volume_divider volume_divider.v "s/then_x = brick_index(turn_of(2'd0/then_x = brick_index(turn_of(2'd1/"
+# A reset that is forgotten: what Verilator starts with zeros would not show it.
+fault frame_buffer frame_buffer.v "0,/since_refresh <= 20'd0;/s//since_refresh <= since_refresh;/" --set memory=dram
 if [ "$long" ]; then
     fault texture_unit texture_filter.vh 's/<< GUARD_BITS >> 1/<< GUARD_BITS >> 2/'
     fault rasterizer slice_rows.vh "s/steps_past(limit - at_0 - 64'sd1, growth)/& + 15'd1/"

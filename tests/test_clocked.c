@@ -92,6 +92,24 @@ static void surround(clocked *c, block_faces *inner)
 #undef SURROUND
 }
 
+/* Ends what was surrounded; those round it have nothing to end. */
+static void finish_surrounded(block_faces *inner)
+{
+#define FINISH(block)                                                                                                  \
+    if (inner->block.finish) {                                                                                         \
+        inner->block.finish(inner->block.state);                                                                       \
+    }
+    FINISH(volume_divider)
+    FINISH(slice_generator)
+    FINISH(rasterizer)
+    FINISH(texture_unit)
+    FINISH(alpha_blender)
+    FINISH(pixel_cache)
+    FINISH(frame_buffer)
+    FINISH(voxel_memory)
+#undef FINISH
+}
+
 /* An alpha blender whose pixels have a colour larger than their alpha. */
 static void wrong_blender(void *state, const alpha_blender_in *in, alpha_blender_out *out)
 {
@@ -126,8 +144,8 @@ static bool draw_shuffled(test_case *c, const vodr_machine *m, outcome *o)
         shuffle(&c->random, order);
     } while (clocked_step(machine, order));
     o->status = clocked_readout(machine, &o->frame, &o->counters, &o->error);
-    *clocked_faces(machine) = inner;
     clocked_free(machine);
+    finish_surrounded(&inner);
     return o->status == VODR_OK;
 }
 
@@ -257,6 +275,12 @@ static void test_progress(void **state)
     expect_progress(3);
 }
 
+static void test_free_nothing(void **state)
+{
+    (void)state;
+    clocked_free(NULL);
+}
+
 int main(int argc, char **argv)
 {
     suite options;
@@ -267,6 +291,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_random_machines, &options),
         cmocka_unit_test(test_accounts),
         cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_free_nothing),
     };
     return cmocka_run_group_tests_name("clocked", tests, NULL, NULL) == 0 ? 0 : 1;
 }

@@ -118,6 +118,16 @@ static void values_out_of_range(void **state)
     assert_set_fails("line_px", "64x1", "line_px is '64x1' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
     assert_set_fails("line_px", "4x4x4", "line_px is '4x4x4' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
     assert_set_fails("line_px", "3x4", "line_px is '3x4' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
+    assert_set_fails("line_px", "0x4", "line_px is '0x4' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
+    assert_set_fails("line_px", "4x0", "line_px is '4x0' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
+    assert_set_fails("line_px", "4x64", "line_px is '4x64' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
+    assert_set_fails("line_px", "4x3", "line_px is '4x3' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
+    assert_set_fails("line_px", "00000000000000016x1",
+                     "line_px is '00000000000000016x1' but must be WIDTHxHEIGHT, powers of two from 1 to 32");
+    assert_set_fails("pipelines", "0", "pipelines is '0' but must be an integer from 1 to 16");
+    assert_set_fails("texture_memory_bytes", "1",
+                     "texture_memory_bytes is '1' but must be an integer from 64 to 1073741824");
+    assert_set_fails("a\nb\x7f", "4", "the machine has no parameter 'a?b?' (`vodr machine show` lists them)");
     assert_set_fails("Ways", "4", "the machine has no parameter 'Ways' (`vodr machine show` lists them)");
 }
 

@@ -126,6 +126,109 @@ static void no_options(void **state)
     case_free(&c);
 }
 
+/* ---- whoever draws, the frame is the same ---- */
+
+static void draw_like_blocks(const test_case *c, const vodr_machine *m, const vodr_options *options)
+{
+    outcome blocks, other;
+    outcome_draw(c, m, &(vodr_options){.threads = 1, .path = VODR_PATH_BLOCKS}, &blocks);
+    outcome_draw(c, m, options, &other);
+    assert_int_equal(blocks.status, VODR_OK);
+    assert_true(outcome_same(stderr, &blocks, &other));
+    outcome_free(&blocks);
+    outcome_free(&other);
+}
+
+static void threads_and_instructions(void **state)
+{
+    (void)state;
+    test_case c;
+    assert_true(case_make(SEED, &c));
+    draw_like_blocks(&c, &c.machine, &(vodr_options){.threads = 0});
+    draw_like_blocks(&c, &c.machine, &(vodr_options){.threads = 1000});
+    for (int simd = VODR_SIMD_BEST; simd <= VODR_SIMD_AVX512; simd++) {
+        draw_like_blocks(&c, &c.machine, &(vodr_options){.threads = 1, .simd = (vodr_simd)simd});
+    }
+    case_free(&c);
+}
+
+/* A volume of few voxels across and many along x, as it is, from the front. */
+static void use_volume(test_case *c, uint8_t *voxels, int32_t x_vox, int32_t y_vox, int32_t z_vox)
+{
+    for (int32_t i = 0; i < x_vox * y_vox * z_vox; i++) {
+        voxels[i] = (uint8_t)(i * 37);
+    }
+    c->input = (vodr_volume){.dims_vox = {x_vox, y_vox, z_vox}, .voxel_bytes = 1, .voxels = voxels};
+    c->view = (vodr_view){.width_px = x_vox,
+                          .height_px = y_vox,
+                          .slices = z_vox,
+                          .footprint = 1 << VODR_FOOTPRINT_BITS,
+                          .base = {1 << 23, 1 << 23, 1 << 23},
+                          .step_u = {1 << 24, 0, 0},
+                          .step_v = {0, 1 << 24, 0},
+                          .step_s = {0, 0, 1 << 24}};
+}
+
+/* Rows that are longer than a brick's words, so that they can be read where they lie. */
+static void long_rows(void **state)
+{
+    (void)state;
+    static uint8_t voxels[300 * 6 * 5];
+    test_case c;
+    assert_true(case_make(SEED, &c));
+    use_volume(&c, voxels, 300, 6, 5);
+    vodr_machine m = vodr_machine_default();
+    vodr_rgba entries[256];
+    for (int i = 0; i < 256; i++) {
+        entries[i] = (vodr_rgba){.r = (uint16_t)(i / 2), .g = 3 < i / 2 ? 3 : 0, .a = (uint16_t)(i / 2)};
+    }
+    c.table = (vodr_table){.entries = entries, .count = 256};
+    draw_like_blocks(&c, &m, &(vodr_options){.threads = 1});
+    /* More fragments than there is room to mark: the fast path leaves the frame to the blocks. */
+    c.view.width_px = 512;
+    c.view.height_px = 1024;
+    c.view.slices = 1024;
+    m.blend = VODR_BLEND_UNDER;
+    draw_like_blocks(&c, &m, &(vodr_options){.threads = 1});
+    case_free(&c);
+}
+
+/* ---- who looks on ---- */
+
+static void on_visit(void *context, const vodr_visit *visit)
+{
+    (void)visit;
+    ++*(uint64_t *)context;
+}
+
+static void on_miss(void *context, int32_t x_px, int32_t y_px)
+{
+    (void)x_px;
+    (void)y_px;
+    ++*(uint64_t *)context;
+}
+
+/* Either function of an observer may be missing. */
+static void half_observers(void **state)
+{
+    (void)state;
+    test_case c;
+    assert_true(case_make(SEED, &c));
+    for (int path = VODR_PATH_FAST; path <= VODR_PATH_CLOCKED; path++) {
+        uint64_t visits = 0, misses = 0;
+        const vodr_observer one = {.context = &visits, .visit = on_visit},
+                            other = {.context = &misses, .miss = on_miss};
+        outcome o;
+        outcome_draw(&c, &c.machine, &(vodr_options){.threads = 1, .path = (vodr_path)path, .observer = &one}, &o);
+        assert_int_equal(visits, o.counters.brick_visits);
+        outcome_free(&o);
+        outcome_draw(&c, &c.machine, &(vodr_options){.threads = 1, .path = (vodr_path)path, .observer = &other}, &o);
+        assert_int_equal(misses, o.counters.misses);
+        outcome_free(&o);
+    }
+    case_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -133,6 +236,9 @@ int main(void)
         cmocka_unit_test(bad_tables),
         cmocka_unit_test(tells_progress),
         cmocka_unit_test(no_options),
+        cmocka_unit_test(threads_and_instructions),
+        cmocka_unit_test(long_rows),
+        cmocka_unit_test(half_observers),
     };
     return cmocka_run_group_tests_name("render", tests, NULL, NULL);
 }

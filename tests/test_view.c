@@ -205,6 +205,27 @@ static void accepted_views_fit_everywhere(void **state)
     assert_true(accepted > 500);
 }
 
+/* Registers go by name: in, and out again; one of the volume is read, and no field of the view. */
+static void registers_by_name(void **state)
+{
+    (void)state;
+    vodr_view v = {.width_px = 3};
+    int64_t value = -1;
+    assert_true(vodr_register_set("step_u_y", -5, &v));
+    assert_int_equal(v.step_u[1], -5);
+    assert_true(vodr_register_get("step_u_y", &v, dims, &value));
+    assert_int_equal(value, -5);
+    assert_true(vodr_register_set("perspective", 1, &v));
+    assert_true(v.perspective);
+    assert_false(vodr_register_set("perspective", 2, &v));
+    assert_false(vodr_register_set("footprint", (int64_t)1 << 32, &v));
+    assert_true(vodr_register_get("dim_z", &v, dims, &value));
+    assert_int_equal(value, 16);
+    assert_false(vodr_register_set("dim_z", 7, &v));
+    assert_false(vodr_register_set("coffee", 1, &v));
+    assert_false(vodr_register_get("coffee", &v, dims, &value));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -215,6 +236,7 @@ int main(void)
         cmocka_unit_test(overflows),
         cmocka_unit_test(borders),
         cmocka_unit_test(accepted_views_fit_everywhere),
+        cmocka_unit_test(registers_by_name),
     };
     return cmocka_run_group_tests_name("view", tests, NULL, NULL);
 }

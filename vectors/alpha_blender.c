@@ -9,6 +9,7 @@ static const char *const machines[] = {"", "fb_bits=16 tf_bits=16", "blend_cycle
 static void draw(rng *random, vodr_machine *m)
 {
     m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
+    m->density_bits = rng_one_in(random, 2) ? 8 : 12;
 }
 
 /* A premultiplied colour, or in mip a density. */

@@ -9,7 +9,7 @@
 #include "layout.h"
 #include "views.h"
 
-enum { LARGEST_VOX = 48, LONGEST_VOX = 150, BRICKS_VOX = 12 };
+enum { LARGEST_VOX = 48, LONGEST_VOX = 150, BRICKS_VOX = 12, MOST_EMPTY_BRICKS = 4096 };
 
 const block_bench *bench_of(vodr_block block)
 {
@@ -47,15 +47,15 @@ vodr_status bench_set(vodr_machine *machine, const char *settings, vodr_error *e
 
 /* ---- the scene ---- */
 
-static bool draw_volume(bench *b, bool bricks)
+static bool draw_volume(bench *b, int32_t longest_vox, bool bricks)
 {
     rng *r = &b->random;
     vodr_volume *v = &b->scene.input;
     int64_t largest = bricks ? BRICKS_VOX : rng_one_in(r, 2) ? LARGEST_VOX : LARGEST_VOX / 2;
     for (int c = 0; c < 3; c++)
         v->dims_vox[c] = (int32_t)rng_int(r, rng_one_in(r, 6) ? 1 : largest / 2, largest);
-    if (!bricks && rng_one_in(r, 12))
-        v->dims_vox[rng_int(r, 0, 2)] = (int32_t)rng_int(r, LARGEST_VOX, LONGEST_VOX);
+    if (!bricks && rng_one_in(r, 5))
+        v->dims_vox[rng_int(r, 0, 2)] = (int32_t)rng_int(r, LARGEST_VOX, longest_vox);
     v->voxel_bytes = density_bytes(&b->machine);
     size_t voxels = (size_t)v->dims_vox[0] * (size_t)v->dims_vox[1] * (size_t)v->dims_vox[2];
     v->voxels = b->scene.voxels = bricks ? malloc(voxels * (size_t)v->voxel_bytes) : NULL;
@@ -67,6 +67,33 @@ static bool draw_volume(bench *b, bool bricks)
             ((uint16_t *)b->scene.voxels)[i] = (uint16_t)density;
     }
     return v->voxels || !bricks;
+}
+
+/* Whether its bricks have addresses in memory, and numbers among those that a library can leave out. */
+static bool has_room(const bench *b)
+{
+    const vodr_machine *m = &b->machine;
+    const int32_t *dims = b->scene.input.dims_vox;
+    int32_t edge_vox[3];
+    int64_t bricks = 1;
+    for (int c = 0; c < 3; c++) {
+        edge_vox[c] = m->traversal == VODR_TRAVERSAL_WHOLE || !m->brick ? dims[c] : m->brick;
+        bricks *= ceil_div32(dims[c], edge_vox[c]);
+    }
+    return bricks <= ((int64_t)1 << 46) / brick_room_bytes(m, edge_vox) &&
+           (!m->skip_empty || bricks <= MOST_EMPTY_BRICKS);
+}
+
+/* Sides as large as they can be, of which nobody reads a voxel. */
+static void draw_large_volume(bench *b)
+{
+    int32_t *dims = b->scene.input.dims_vox;
+    b->scene.input.voxel_bytes = density_bytes(&b->machine);
+    for (int c = 0; c < 3; c++)
+        dims[c] = (int32_t)rng_int(&b->random, 1, VODR_MAX_DIM_VOX);
+    while (!has_room(b))
+        for (int c = 0; c < 3; c++)
+            dims[c] -= rng_one_in(&b->random, 2) ? dims[c] / 2 : 0;
 }
 
 static bool draw_table(bench *b)
@@ -156,12 +183,32 @@ vodr_status bench_start(bench *b, vodr_block block, vodr_error *error)
     return made ? VODR_OK : vodr_fail(error, VODR_NO_MEMORY, "no memory for a block");
 }
 
+vodr_status bench_open_large(bench *b, const block_bench *what, const vodr_machine *machine, uint64_t seed,
+                             vodr_error *error)
+{
+    bool bricks = what->block == VODR_BLOCK_FRAME_BUFFER;
+    *b = (bench){.random = {seed}, .machine = *machine};
+    if (what->draw)
+        what->draw(&b->random, &b->machine);
+    if (!bricks)
+        draw_large_volume(b);
+    if ((bricks && !draw_volume(b, 0, true)) || !draw_table(b))
+        return vodr_fail(error, VODR_NO_MEMORY, "no memory for a volume and a table");
+    b->scene.view = views_large(&b->random, b->scene.input.dims_vox);
+    vodr_status status = bench_set_up(b, error);
+    if (status != VODR_OK)
+        return status;
+    draw_empty(b);
+    return bench_start(b, what->block, error);
+}
+
 vodr_status bench_open(bench *b, const block_bench *what, const vodr_machine *machine, uint64_t seed, vodr_error *error)
 {
     *b = (bench){.random = {seed}, .machine = *machine};
     if (what->draw)
         what->draw(&b->random, &b->machine);
-    if (!draw_volume(b, what->block == VODR_BLOCK_FRAME_BUFFER) || !draw_table(b))
+    if (!draw_volume(b, what->longest_vox ? what->longest_vox : LONGEST_VOX, what->block == VODR_BLOCK_FRAME_BUFFER) ||
+        !draw_table(b))
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a volume and a table");
     b->scene.view = views_any(&b->random, b->scene.input.dims_vox);
     vodr_view other = b->scene.view;

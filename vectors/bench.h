@@ -49,6 +49,8 @@ typedef struct block_bench {
     const char *const *machines;
     /* Draws what it has as registers. NULL: nothing. */
     void (*draw)(rng *random, vodr_machine *machine);
+    /* Of a volume now and then an edge is up to so long; 0: as long as for all. */
+    int32_t longest_vox;
     /* Draws another view of a volume than views_any() did, which is taken if it is legal. NULL: none. */
     void (*look)(rng *random, const int32_t dims_vox[3], vodr_view *view);
     /* Clocks the block until that many transactions are done, or bench_differs(). */
@@ -58,6 +60,7 @@ typedef struct block_bench {
      * and is what the Verilog may count on. */
     const char *(*illegal)(const bench *b, void *rules, const void *in, const void *shown);
     size_t rules_bytes;
+    bool large;           /* it has numbers that only large volumes and frames fill: see bench_open_large() */
     const char *vectors;  /* the machine of test vectors, on top of paper-16: small lines, few of them */
     uint64_t case_cycles; /* of a case of them, at most */
     uint64_t level_cycles[VECTORS_LEVELS]; /* of all cases of a level, at least */
@@ -82,6 +85,10 @@ vodr_status bench_set(vodr_machine *machine, const char *settings, vodr_error *e
 /* A bench before its first cycle: the machine's registers, a scene and the block. To be closed after any outcome. */
 vodr_status bench_open(bench *b, const block_bench *what, const vodr_machine *machine, uint64_t seed,
                        vodr_error *error);
+
+/* The same, of a volume and a frame as large as there can be: for lock-step, which need not write them down. */
+vodr_status bench_open_large(bench *b, const block_bench *what, const vodr_machine *machine, uint64_t seed,
+                             vodr_error *error);
 
 /* The same in steps, when machine, view and the volume's size are known: what the block is made from, whose tables may
  * be written then, and the block. */

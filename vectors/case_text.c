@@ -14,7 +14,7 @@
 #include "registers.h"
 
 /* Larger ones would take the model in C long, and no vectors have them. */
-enum { MOST_PIXELS = 1 << 22, MOST_BRICKS = 1 << 16, MOST_VOXELS = 1 << 18, MOST_SLICES = 1 << 12 };
+enum { MOST_PIXELS = 1 << 28, MOST_BRICKS = 1 << 26, MOST_VOXELS = 1 << 18, MOST_SLICES = 1 << 14 };
 
 /* ---- the view ---- */
 
@@ -171,7 +171,7 @@ static vectors_status read_view(const reader *r)
     if (*rest)
         return refuse(r, "the view has more than its registers");
     if (v->width_px < 1 || v->height_px < 1 || v->width_px > MOST_PIXELS / v->height_px || v->slices > MOST_SLICES)
-        return refuse(r, "vectors have frames of at most 2^22 pixels and 2^12 slices");
+        return refuse(r, "vectors have frames of at most 2^28 pixels and 2^14 slices");
     return VECTORS_OK;
 }
 
@@ -289,7 +289,7 @@ static vectors_status set_up(const reader *r)
     for (int c = 0; c < 3; c++)
         bricks *= edge ? ceil_div32(b->scene.input.dims_vox[c], edge) : 1;
     if (bricks > MOST_BRICKS)
-        return refuse(r, "vectors have volumes of at most 2^16 bricks");
+        return refuse(r, "vectors have volumes of at most 2^26 bricks");
     b->scene.entries = calloc(count, sizeof *b->scene.entries);
     b->scene.table = (vodr_table){.entries = b->scene.entries, .count = count};
     if (!b->scene.entries)

@@ -249,6 +249,7 @@ const block_bench bench_frame_buffer = {.block = VODR_BLOCK_FRAME_BUFFER,
                                         .traffic = traffic,
                                         .illegal = illegal,
                                         .rules_bytes = sizeof(bus_rules),
+                                        .large = true,
                                         .vectors = "line_px=4x1 mem_bus_bytes=4 write_fifo=4",
                                         .case_cycles = 640,
                                         .level_cycles = {10500, 1000000}};

@@ -26,16 +26,25 @@ static void draw(rng *random, vodr_machine *m)
     m->write_policy = rng_one_in(random, 3) ? VODR_WRITE_POLICY_THROUGH : VODR_WRITE_POLICY_BACK;
 }
 
-/* Frames as long as they can be, so that numbers of lines have all their bits. */
+static int32_t side_px(rng *random)
+{
+    enum { LARGE_PX = 2048 };
+    return rng_one_in(random, 4) ? VODR_MAX_SIZE_PX : (int32_t)rng_int(random, 1, LARGE_PX);
+}
+
+/* Frames as long as they can be, and large ones, so that numbers of lines have all their bits. */
 static void look(rng *random, const int32_t dims_vox[3], vodr_view *view)
 {
     enum { SHORT_PX = 8 };
     (void)dims_vox;
-    if (!rng_one_in(random, 4))
-        return;
-    bool wide = rng_one_in(random, 2);
-    view->width_px = wide ? VODR_MAX_SIZE_PX : SHORT_PX;
-    view->height_px = wide ? SHORT_PX : VODR_MAX_SIZE_PX;
+    if (rng_one_in(random, 3)) {
+        view->width_px = side_px(random);
+        view->height_px = side_px(random);
+    } else if (rng_one_in(random, 4)) {
+        bool wide = rng_one_in(random, 2);
+        view->width_px = wide ? VODR_MAX_SIZE_PX : SHORT_PX;
+        view->height_px = wide ? SHORT_PX : VODR_MAX_SIZE_PX;
+    }
 }
 
 /* ---- fragments: the texture unit's side ---- */
@@ -86,9 +95,24 @@ static void draw_pattern(bench *b, texture_side *t)
         draw_thrash(b, t);
 }
 
-/* The pixel whose coordinates differ in one bit. */
+/* The first pixel of the line whose number differs in one bit, of lines row by row. */
+static void next_line_twin(bench *b, texture_side *t, const fb_layout *layout)
+{
+    int64_t number = line_number(layout, t->port.x, t->port.y) ^ (int64_t)1 << rng_int(&b->random, 0, 25);
+    if (number >= layout->lines)
+        return;
+    t->port.x = (int32_t)(number % layout->columns) * b->machine.line_px.width;
+    t->port.y = (int32_t)(number / layout->columns) * b->machine.line_px.height;
+}
+
+/* The pixel whose coordinates, or whose line's number, differ in one bit. */
 static void next_twin(bench *b, texture_side *t)
 {
+    const fb_layout layout = fb_layout_of(&b->machine, b->scene.view.width_px, b->scene.view.height_px);
+    if (!layout.tiled && rng_one_in(&b->random, 2)) {
+        next_line_twin(b, t, &layout);
+        return;
+    }
     int32_t bit = 1 << rng_int(&b->random, 0, 13);
     bool across = rng_one_in(&b->random, 2);
     int32_t x = across ? t->port.x ^ bit : t->port.x, y = across ? t->port.y : t->port.y ^ bit;
@@ -201,12 +225,19 @@ static void set_before(bench *b, const texture_side *t, report_port before[BLOCK
         before[rng_int(&b->random, 0, BLOCKS_BEFORE - 1)].idle = false;
 }
 
+/* How many fragments a frame has: often so few that hardly a line is left for the flush. */
+static uint64_t draw_length(bench *b, uint64_t transactions)
+{
+    enum { FEW = 4, SOME = 64 };
+    int64_t most = rng_one_in(&b->random, 6) ? FEW : rng_one_in(&b->random, 6) ? SOME : LONGEST_FRAME;
+    return (uint64_t)rng_int(&b->random, 1, (uint64_t)most < transactions ? most : (int64_t)transactions);
+}
+
 static void traffic(bench *b, uint64_t transactions)
 {
     pixel_cache_face *face = &b->faces->pixel_cache;
     pixel_cache_out out = b->reset->pixel_cache;
-    uint64_t most = transactions < LONGEST_FRAME ? transactions : LONGEST_FRAME;
-    texture_side texture = {.left = (uint64_t)rng_int(&b->random, 1, (int64_t)most)};
+    texture_side texture = {.left = draw_length(b, transactions)};
     blend_side blender = {.port = {.valid = false}};
     memory_side memory = {0};
     report_port before[BLOCKS_BEFORE] = {{0}};

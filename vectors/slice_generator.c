@@ -4,12 +4,24 @@
 
 static const char *const machines[] = {"", NULL};
 
-enum { SLICES_A_VIEW = 2000 };
+enum { SLICES_A_VIEW = 2000, SLICES_A_BRICK = 60 };
 
 static void draw(rng *random, vodr_machine *m)
 {
     m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
     m->slice_setup_cycles = rng_one_in(random, 3) ? 1 : (int32_t)rng_int(random, 2, 9);
+}
+
+/* Frames and slices as many as there can be, so that numbers have all their bits. */
+static void look(rng *random, const int32_t dims_vox[3], vodr_view *view)
+{
+    int32_t *const sizes[] = {&view->width_px, &view->height_px, &view->slices};
+    (void)dims_vox;
+    if (rng_one_in(random, 2))
+        return;
+    for (int i = 0; i < 3; i++)
+        if (rng_one_in(random, 2))
+            *sizes[i] = (int32_t)rng_int(random, 1, i == 2 ? VODR_MAX_SLICES : VODR_MAX_SIZE_PX);
 }
 
 /* A range within [0, size], not empty: all of it, its first or last place, or any. */
@@ -29,6 +41,12 @@ static brick_port any_brick(bench *b)
     range(&b->random, v->width_px, &p.bound.x0, &p.bound.x1);
     range(&b->random, v->height_px, &p.bound.y0, &p.bound.y1);
     range(&b->random, v->slices, &p.k0, &p.k1);
+    if (p.k1 - p.k0 > SLICES_A_BRICK) {
+        bool at_end = rng_one_in(&b->random, 2);
+        int32_t count = (int32_t)rng_int(&b->random, 1, SLICES_A_BRICK);
+        p.k0 = at_end ? p.k1 - count : p.k0;
+        p.k1 = at_end ? p.k1 : p.k0 + count;
+    }
     if (rng_one_in(&b->random, 20))
         p.k1 = p.k0;
     return p;
@@ -86,8 +104,11 @@ static const char *illegal(const bench *b, void *rules, const void *inputs, cons
 const block_bench bench_slice_generator = {.block = VODR_BLOCK_SLICE_GENERATOR,
                                            .machines = machines,
                                            .draw = draw,
+                                           .longest_vox = VODR_MAX_DIM_VOX,
+                                           .look = look,
                                            .traffic = traffic,
                                            .illegal = illegal,
+                                           .large = true,
                                            .vectors = "",
                                            .case_cycles = 400,
                                            .level_cycles = {10000, 1000000}};

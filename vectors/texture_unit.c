@@ -406,9 +406,11 @@ static const char *illegal(const bench *b, void *rules, const void *inputs, cons
 const block_bench bench_texture_unit = {.block = VODR_BLOCK_TEXTURE_UNIT,
                                         .machines = machines,
                                         .draw = draw,
+                                        .longest_vox = 8192,
                                         .traffic = traffic,
                                         .illegal = illegal,
                                         .rules_bytes = sizeof(texture_rules),
+                                        .large = true,
                                         .vectors = "mem_bus_bytes=4 fragment_fifo=6",
                                         .case_cycles = 1024,
                                         .level_cycles = {12000, 1000000}};

@@ -89,20 +89,21 @@ static int64_t wild_step(rng *r, int bits)
     return rng_one_in(r, 8) ? 0 : rng_signed(r, bits);
 }
 
-vodr_view views_wild(rng *r, const int32_t dims_vox[3], bool perspective)
+/* Steps are shorter by some bits where frames are larger, or hardly any view would be legal. */
+static vodr_view wild(rng *r, const int32_t dims_vox[3], bool perspective, int32_t most_px, int shorter_bits)
 {
     for (;;) {
-        vodr_view v = {.width_px = (int32_t)rng_int(r, 1, 24),
-                       .height_px = (int32_t)rng_int(r, 1, 24),
-                       .slices = (int32_t)rng_int(r, 1, 24),
+        vodr_view v = {.width_px = (int32_t)rng_int(r, 1, most_px),
+                       .height_px = (int32_t)rng_int(r, 1, most_px),
+                       .slices = (int32_t)rng_int(r, 1, most_px),
                        .perspective = perspective,
                        .shift = perspective ? (int32_t)rng_int(r, 0, 30) : 0,
                        .footprint = 1u << rng_int(r, 14, 24)};
-        int depth_bits = (int)rng_int(r, 1, 23), step_bits = 28;
+        int depth_bits = (int)rng_int(r, 1, 23), step_bits = 28 - shorter_bits / 4;
         if (perspective) {
             v.depth_first = rng_int(r, 1 << 16, ((int64_t)2 << 16) << depth_bits);
             v.depth_step = -rng_int(r, 0, (v.depth_first - (1 << 16)) / v.slices);
-            step_bits = 31 + v.shift - depth_bits;
+            step_bits = 31 + v.shift - depth_bits - shorter_bits;
         }
         for (int i = 0; i < 3; i++) {
             v.base[i] = rng_int(r, -((int64_t)dims_vox[i] << 23), (int64_t)dims_vox[i] * 3 << 23);
@@ -116,6 +117,16 @@ vodr_view views_wild(rng *r, const int32_t dims_vox[3], bool perspective)
         if (vodr_view_check(&v, dims_vox, NULL) == VODR_OK)
             return v;
     }
+}
+
+vodr_view views_wild(rng *r, const int32_t dims_vox[3], bool perspective)
+{
+    return wild(r, dims_vox, perspective, 24, 0);
+}
+
+vodr_view views_large(rng *r, const int32_t dims_vox[3])
+{
+    return wild(r, dims_vox, rng_one_in(r, 2), VODR_MAX_SIZE_PX, 12);
 }
 
 static int32_t any_size(rng *r)

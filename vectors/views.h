@@ -25,4 +25,7 @@ vodr_view views_any(rng *r, const int32_t dims_vox[3]);
 /* Registers that the check accepts and no camera would write: skewed, degenerate, far off, coarse or fine. */
 vodr_view views_wild(rng *r, const int32_t dims_vox[3], bool perspective);
 
+/* The same of a frame of any size there can be: what registers can hold. */
+vodr_view views_large(rng *r, const int32_t dims_vox[3]);
+
 #endif

@@ -84,6 +84,7 @@ const block_bench bench_volume_divider = {.block = VODR_BLOCK_VOLUME_DIVIDER,
                                           .look = look,
                                           .traffic = traffic,
                                           .illegal = illegal,
+                                          .large = true,
                                           .vectors = "skip_empty=1 texture_memory_bytes=1048576",
                                           .case_cycles = 2048,
                                           .level_cycles = {30000, 1000000}};

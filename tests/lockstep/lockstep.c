@@ -18,7 +18,7 @@
 #include "lockstep.h"
 #include "modules.h"
 
-enum { EPISODE_TRANSACTIONS = 1000 };
+enum { EPISODE_TRANSACTIONS = 1000, LARGE_ONE_IN = 4 };
 
 static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp},
                                                {.name = "blend", .test_func = lockstep_blend}};
@@ -61,14 +61,17 @@ static void check_inputs(const rtl_block *block)
 }
 
 /* The bench stops at the first difference. */
-static void begin(const block_bench *what, const char *settings, uint64_t seed, rtl_found *found, episode *e)
+static void begin(const block_bench *what, const char *settings, bool large, uint64_t seed, rtl_found *found,
+                  episode *e)
 {
     vodr_error error;
     vodr_machine machine;
-    const rtl_source source = {.root = VODR_ROOT, .build = VODR_BUILD, .found = found};
+    const rtl_source source = {.root = VODR_ROOT, .build = VODR_BUILD, .seed = (uint32_t)seed, .found = found};
     bench *b = &e->bench;
     assert_int_equal(vodr_machine_named("paper-16", &machine, &error), VODR_OK);
-    if (bench_set(&machine, settings, &error) != VODR_OK || bench_open(b, what, &machine, seed, &error) != VODR_OK) {
+    vodr_status (*const open)(bench *, const block_bench *, const vodr_machine *, uint64_t, vodr_error *) =
+        large ? bench_open_large : bench_open;
+    if (bench_set(&machine, settings, &error) != VODR_OK || open(b, what, &machine, seed, &error) != VODR_OK) {
         fail_msg("%s", error.text);
     }
     if (lockstep_open(&e->pair, &source, what->block, &b->setup, b->faces, b->reset, &error) != RTL_OK) {
@@ -85,11 +88,11 @@ static void end(episode *e)
 }
 
 /* Up to `count` transactions; *count is then how many there were. */
-static bool run_episode(const block_bench *what, const char *settings, uint64_t seed, rtl_found *found, uint64_t *count,
-                        uint64_t *cycles)
+static bool run_episode(const block_bench *what, const char *settings, bool large, uint64_t seed, rtl_found *found,
+                        uint64_t *count, uint64_t *cycles)
 {
     episode e;
-    begin(what, settings, seed, found, &e);
+    begin(what, settings, large, seed, found, &e);
     what->traffic(&e.bench, *count);
     const difference d = e.pair.first;
     uint64_t cycle = e.bench.cycles;
@@ -117,7 +120,8 @@ static void test_block(void **state)
         uint64_t cycles = 0, done = 0;
         for (uint64_t seed = first_seed; good && done < transactions; seed++) {
             uint64_t left = transactions - done, count = left < EPISODE_TRANSACTIONS ? left : EPISODE_TRANSACTIONS;
-            good = run_episode(what, *m, seed, &found, &count, &cycles);
+            bool large = what->large && seed % LARGE_ONE_IN == 2;
+            good = run_episode(what, *m, large, seed, &found, &count, &cycles);
             done += count;
         }
         printf("%s, paper-16 %s: %" PRIu64 " transactions in %" PRIu64 " cycles\n", signals_of(what->block)->name, *m,
