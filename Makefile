@@ -44,7 +44,7 @@ REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
-REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_gpu_record,$(TESTS))
+REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_cluster $(BUILD)/tests/test_gpu_record,$(TESTS))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
@@ -274,7 +274,7 @@ $(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib -Ibench/lib
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
-$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs
