@@ -29,8 +29,8 @@ parallel='--tf tf --view 35,25,10 --zoom 2 --size 83x71'
 perspective='--tf tf --view -140,-30 --projection perspective:75 --zoom 2.5 --size 71x83 --slices 64'
 
 # ---- what one node draws ----
-# shellcheck disable=SC2086
 view=
+# shellcheck disable=SC2086
 for look in parallel perspective; do
     eval "view=\$$look"
     for blend in over mip; do
