@@ -58,7 +58,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
 
 all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -144,6 +144,10 @@ findings: ## hold the named machines against paper-16 on every volume at hand, a
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
 	@$(BUILD)/bench/table_vodr
+
+table-balance: all ## how even the cluster's nodes are, beside the paper's, and write docs/table-balance.md again (minutes)
+	@scripts/tables $(BUILD) balance
+	@cat $(BUILD)/tables/balance
 
 table-cycles: ## cycles a frame, divided or not; what counting them costs
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
