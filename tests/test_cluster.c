@@ -60,14 +60,15 @@ typedef struct field {
     sums sums;
 } field;
 
-/* Blobs in an empty box. */
+/* Blobs in an empty box; or noise in a small one, which no few planes divide evenly. */
 static field random_field(rng *r)
 {
     field f;
     vodr_error error;
     double middle[4][4];
+    const bool noise = rng_one_in(r, 3);
     for (int a = 0; a < 3; a++)
-        f.count[a] = (int32_t)rng_int(r, 1, 24);
+        f.count[a] = (int32_t)rng_int(r, 1, noise ? 9 : 24);
     for (int i = 0; i < 4; i++)
         for (int a = 0; a < 4; a++)
             middle[i][a] = a < 3 ? rng_real(r, 0, f.count[a]) : rng_real(r, 1, 7);
@@ -76,8 +77,8 @@ static field random_field(rng *r)
     for (int32_t z = 0; z < f.count[2]; z++)
         for (int32_t y = 0; y < f.count[1]; y++)
             for (int32_t x = 0; x < f.count[0]; x++, i++) {
-                f.occupied[i] = 0;
-                for (int b = 0; b < 4; b++)
+                f.occupied[i] = noise && rng_one_in(r, 3);
+                for (int b = 0; !noise && b < 4; b++)
                     if (hypot(hypot(x - middle[b][0], y - middle[b][1]), z - middle[b][2]) < middle[b][3])
                         f.occupied[i] = 1;
             }
@@ -123,7 +124,7 @@ static void test_cover(void **state)
     (void)state;
     vodr_error error;
     rng r = {7};
-    for (int n = 0; n < 40; n++) {
+    for (int n = 0; n < 80; n++) {
         field f = random_field(&r);
         const balance_input in = {&f.sums, &f.sums, (int32_t)rng_int(&r, 1, 20)};
         for (int m = 0; m < METHODS; m++) {
