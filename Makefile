@@ -46,7 +46,7 @@ REFERENCE := $(patsubst %.c,$(BUILD)/%.o,$(filter-out reference/device_no_cuda.c
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
-REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_gpu_record,$(TESTS))
+REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_cluster $(BUILD)/tests/test_gpu_record,$(TESTS))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
@@ -60,7 +60,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth mutation clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth mutation clean
 
 all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -163,6 +163,10 @@ findings: ## hold the named machines against paper-16 on every volume at hand, a
 table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
 	@$(BUILD)/bench/table_vodr
+
+table-balance: all ## how even the cluster's nodes are, beside the paper's, and write docs/table-balance.md again (minutes)
+	@scripts/tables $(BUILD) balance
+	@cat $(BUILD)/tables/balance
 
 table-cycles: ## cycles a frame, divided or not; what counting them costs
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
@@ -308,7 +312,7 @@ $(BUILD)/tests/test_no_memory: private WRAPPED := $(addprefix -Wl$(comma)--wrap=
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) $(WRAPPED) -o $@ $^ -lcmocka $(LIBRARIES)
 
-$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs

@@ -26,6 +26,10 @@ cluster_status balance_make(cluster_balance method, const balance_input *in, kd_
 /* The method CLUSTER_BEST. */
 cluster_status balance_best(const balance_input *in, kd_tree *t, vodr_error *error);
 
+/* What it ends with: pieces change owner until the nodes' weights are within a hundredth, or no piece helps, or all
+ * have BALANCE_PARTS parts. */
+cluster_status balance_trade(const balance_input *in, kd_tree *t, vodr_error *error);
+
 /* The place of the plane that divides the weight in a box as left:right, by walking from both ends, always on the side
  * that has less of its share. Between lo and hi of the axis, both included. */
 int32_t balance_plane(const sums *weight, const box *b, int axis, int32_t left, int32_t right);

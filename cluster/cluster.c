@@ -9,8 +9,12 @@
 
 enum { CLUSTER_LEAST = 15, REDUCED = 4096 };
 
-/* A box this full of sub-volumes that are not empty is not divided further. */
-static const double efficiency = 0.8;
+/* A box this full of sub-volumes that are not empty is not divided further: as the paper has it, and with best, as rays
+ * pass over what is empty, but cost something in each box. */
+static const double efficiency = 0.8, best_efficiency = 0.4;
+
+/* By time, the volume is not divided anew while the nodes are as even as this. */
+static const double even = 0.92;
 
 /* ---- opening ---- */
 
@@ -185,14 +189,22 @@ static cluster_status divide(cluster *c, const reference_march_job *job, double 
     if (status == CLUSTER_OK)
         status = tell_shares(c, error);
     if (status == CLUSTER_OK && c->options.balance != CLUSTER_STATIC)
-        status = clustering_refine(&c->tree, &c->counts, efficiency, CLUSTER_LEAST, error);
+        status =
+            clustering_refine(&c->tree, &c->counts, c->options.balance == CLUSTER_BEST ? best_efficiency : efficiency,
+                              CLUSTER_LEAST, error);
     return status;
 }
 
 cluster_status cluster_place(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error)
 {
     const double begin_s = cluster_now_s();
-    cluster_status status = cluster_agree(c->node, divide(c, job, lo, hi, error), error);
+    const bool timing = c->frames > 0 && c->frames < CLUSTER_TIMED_FRAMES;
+    double told_even = c->options.weight == CLUSTER_TIME && (timing || (c->measured && c->report.lbr_time >= even));
+    cluster_status status = cluster_reduce(c->node, &told_even, 1, false, error); /* they time the same, but round */
+    if (status != CLUSTER_OK || told_even > 0)
+        return status;
+    c->frames = 0;
+    status = cluster_agree(c->node, divide(c, job, lo, hi, error), error);
     if (status != CLUSTER_OK)
         return status;
     const double divided_s = cluster_now_s();

@@ -67,6 +67,9 @@ typedef enum cluster_balance { CLUSTER_STATIC, CLUSTER_OCTREE, CLUSTER_PAPER, CL
 typedef enum cluster_weight { CLUSTER_COUNT, CLUSTER_SAMPLES, CLUSTER_TIME } cluster_weight;
 typedef enum cluster_composite { CLUSTER_DIRECT, CLUSTER_BINARY_SWAP, CLUSTER_RADIX_K } cluster_composite;
 
+/* By time, so many frames are drawn before the volume is divided anew: the least of their times counts. */
+enum { CLUSTER_TIMED_FRAMES = 3 };
+
 enum { CLUSTER_MAX_NODES = 1024, CLUSTER_LEAST_SUBVOLUME_VOX = 4, CLUSTER_MOST_SUBVOLUME_VOX = 64 };
 
 typedef struct cluster_options {
@@ -114,8 +117,9 @@ typedef struct cluster_share {
     int32_t clusters;    /* boxes drawn */
     uint64_t held_bytes; /* voxels, borders too */
     uint64_t samples;
-    double render_s, cpu_s; /* of the last frame: by the clock, and of all threads */
-    double composite_s;     /* after rendering, waiting included; simulated: by the model */
+    double render_s;    /* of the last frame, by the clock */
+    double cpu_s;       /* of all threads; least of the frames since the volume was divided */
+    double composite_s; /* after rendering, waiting included; simulated: by the model */
     uint64_t sent_bytes;
     double scan_s, divide_s, load_s; /* preprocessing */
 } cluster_share;

@@ -50,8 +50,6 @@ static cluster_status run_round(cluster_node *node, mail *m, composite_piece *pi
     open_gap(m->in, s->own, s->members);
     if (status == CLUSTER_OK)
         status = composite_take(s, piece, m->in, error);
-    if (status != CLUSTER_OK)
-        node->broken = true; /* the others wait for a message that does not come */
     free_mail(m);
     return status;
 }
@@ -74,8 +72,6 @@ static cluster_status collect(cluster_node *node, mail *m, composite_piece *piec
         status = node_exchange(node, peers, m->peer, m->out, m->in, error);
     for (int32_t i = 0; status == CLUSTER_OK && node->rank == 0 && i < peers; i++)
         status = layers_unpack(&piece->layers, &m->in[i], error);
-    if (status != CLUSTER_OK)
-        node->broken = true;
     free_mail(m);
     return status;
 }
@@ -87,7 +83,7 @@ cluster_status composite_run(cluster_node *node, cluster_composite method, compo
         node->broken = true;
         return cluster_no_memory(error);
     }
-    cluster_status status = CLUSTER_OK;
+    cluster_status status = layers_merge(&piece->layers, error);
     const int32_t rounds = composite_rounds(method, node->ranks);
     for (int32_t round = 0; status == CLUSTER_OK && round < rounds; round++) {
         composite_step_of(method, node->ranks, round, node->rank, &m->step);
@@ -95,6 +91,8 @@ cluster_status composite_run(cluster_node *node, cluster_composite method, compo
     }
     if (status == CLUSTER_OK && node->ranks > 1)
         status = collect(node, m, piece, error);
+    if (status != CLUSTER_OK)
+        node->broken = true; /* the others wait for a message that does not come */
     free(m);
     return status;
 }

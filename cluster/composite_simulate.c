@@ -97,6 +97,8 @@ cluster_status composite_simulate(cluster_composite method, int32_t nodes, compo
         free(r);
         return cluster_no_memory(error);
     }
+    for (int32_t i = 0; status == CLUSTER_OK && i < nodes; i++)
+        status = layers_merge(&piece[i].layers, error);
     const int32_t rounds = composite_rounds(method, nodes);
     for (int32_t round = 0; status == CLUSTER_OK && round < rounds; round++) {
         status = give_all(r, method, round, piece, error);

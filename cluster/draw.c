@@ -69,6 +69,12 @@ static cluster_status begin_frame(frame *f, vodr_error *error)
     return CLUSTER_OK;
 }
 
+/* The least so far, 0 being none: what else a computer does only adds to a time. */
+static double least_of(double so_far_s, double seconds)
+{
+    return so_far_s > 0 && so_far_s < seconds ? so_far_s : seconds;
+}
+
 static cluster_status draw_leaf(frame *f, int32_t i, layers *l, cluster_share *share, vodr_error *error)
 {
     brick *b = &f->cluster->bricks.brick[f->leaf[i]];
@@ -76,7 +82,6 @@ static cluster_status draw_leaf(frame *f, int32_t i, layers *l, cluster_share *s
     reference_stats stats;
     const rectangle area = leaf_area(f, i);
     const double begin_s = cluster_cpu_s();
-    b->cpu_s = 0;
     if (rectangle_is_empty(area))
         return CLUSTER_OK;
     job.camera.first_px[0] = area.x0;
@@ -91,7 +96,7 @@ static cluster_status draw_leaf(frame *f, int32_t i, layers *l, cluster_share *s
         return status == REFERENCE_INVALID ? CLUSTER_INVALID : CLUSTER_ENVIRONMENT;
     layers_march(l, l->count - 1, area, f->rgba);
     share->samples += stats.samples;
-    b->cpu_s = cluster_cpu_s() - begin_s;
+    b->cpu_s = least_of(b->cpu_s, cluster_cpu_s() - begin_s);
     return CLUSTER_OK;
 }
 
@@ -114,7 +119,7 @@ static cluster_status draw_node(frame *f, int32_t owner, layers *l, vodr_error *
             status = draw_leaf(f, j, l, share, error);
     }
     share->render_s = cluster_now_s() - begin_s;
-    share->cpu_s = cluster_cpu_s() - begin_cpu_s;
+    share->cpu_s = least_of(share->cpu_s, cluster_cpu_s() - begin_cpu_s);
     return status;
 }
 
@@ -209,6 +214,9 @@ cluster_status cluster_draw(cluster *c, const reference_march_job *job, double *
     c->report.frame_s = cluster_now_s() - begin_s;
     if (status == CLUSTER_OK)
         status = gather_shares(&f, composite_s, error);
+    c->frames++;
+    if (status == CLUSTER_OK && c->options.weight == CLUSTER_TIME && c->frames >= CLUSTER_TIMED_FRAMES)
+        status = weights_measure(c, &job->camera, error);
     report(&f, composite_s);
     free_frame(&f);
     return status;

@@ -176,7 +176,9 @@ cluster_status cluster_agree(cluster_node *node, cluster_status status, vodr_err
     } told = {status, *error};
     if (!node->ops->broadcast(&told, sizeof told, root))
         return lost(node, error);
-    snprintf(error->text, sizeof error->text, "node %d of %d: %.*s", root, node->ranks, (int)sizeof error->text - 32,
-             told.error.text);
+    *error = told.error;
+    if (fine > 0) /* not all have failed */
+        snprintf(error->text, sizeof error->text, "node %d of %d: %.*s", root, node->ranks,
+                 (int)sizeof error->text - 40, told.error.text);
     return told.status;
 }

@@ -14,7 +14,7 @@ typedef struct brick {
     size_t held_bytes;
     void *voxels; /* to be released; NULL: not loaded */
     reference *renderer;
-    double cpu_s; /* of the last frame */
+    double cpu_s; /* least of the frames since it was placed; 0: none was drawn */
 } brick;
 
 /* Bricks by the number of their leaf, so that the order of sight finds them. */
@@ -40,6 +40,7 @@ struct cluster {
     cluster_share *share; /* of each node */
     cluster_report report;
     double scan_s;
+    int32_t frames; /* drawn since the volume was divided */
 };
 
 /* Seconds since some moment, and of all threads of this process. */
@@ -54,6 +55,10 @@ static inline bool cluster_holds(const cluster *c, int32_t owner)
 
 /* The weights of the sub-volumes, by c->options.weight. */
 void weights_fill(const cluster *c, const reference_camera *camera, double *weight);
+
+/* Makes c->measured of the seconds that each box took in the frame just drawn, half and half with what was known. All
+ * nodes call it. */
+cluster_status weights_measure(cluster *c, const reference_camera *camera, vodr_error *error);
 
 /* The voxels of a leaf's box, half-open. */
 void bricks_box(const cluster *c, int32_t leaf, int32_t lo_vox[3], int32_t hi_vox[3]);

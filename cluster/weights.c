@@ -1,9 +1,10 @@
 /* weights.c - what drawing a sub-volume costs: one, as the paper counts; the samples that rays take in it; or the time
  * that it took in the last frame. */
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 #include <time.h>
 
+#include "fail.h"
 #include "footprint.h"
 #include "state.h"
 
@@ -40,6 +41,18 @@ static double extent(const subvolumes *s, const int32_t at[3], double middle[3])
     return voxels;
 }
 
+static size_t number_of(const subvolumes *s, const int32_t at[3])
+{
+    return ((size_t)at[2] * (size_t)s->count[1] + (size_t)at[1]) * (size_t)s->count[0] + (size_t)at[0];
+}
+
+/* Samples that rays take in a sub-volume. */
+static double expected(const subvolumes *s, const reference_camera *camera, const int32_t at[3])
+{
+    double middle[3], voxels = extent(s, at, middle);
+    return voxels * fmax(footprint_samples(camera, middle), least_share);
+}
+
 void weights_fill(const cluster *c, const reference_camera *camera, double *weight)
 {
     const subvolumes *s = &c->grid;
@@ -48,16 +61,57 @@ void weights_fill(const cluster *c, const reference_camera *camera, double *weig
     for (at[2] = 0; at[2] < s->count[2]; at[2]++)
         for (at[1] = 0; at[1] < s->count[1]; at[1]++)
             for (at[0] = 0; at[0] < s->count[0]; at[0]++, i++) {
-                double middle[3], voxels = extent(s, at, middle);
-                weight[i] = 0;
+                const bool measured = c->measured && c->measured[i] > 0;
                 if (!c->occupied[i])
-                    continue;
-                if (c->options.weight == CLUSTER_COUNT) {
+                    weight[i] = 0;
+                else if (c->options.weight == CLUSTER_COUNT)
                     weight[i] = 1;
-                    continue;
-                }
-                double samples = voxels * fmax(footprint_samples(camera, middle), least_share);
-                weight[i] =
-                    c->options.weight == CLUSTER_TIME && c->measured && c->measured[i] > 0 ? c->measured[i] : samples;
+                else if (c->options.weight == CLUSTER_TIME && measured)
+                    weight[i] = c->measured[i];
+                else
+                    weight[i] = expected(s, camera, at);
             }
+}
+
+/* ---- measured ---- */
+
+/* Adds up the samples of a leaf's sub-volumes that are not empty; with `share`, sets their seconds to so much a sample.
+ */
+static double share_out(const cluster *c, const box *b, const reference_camera *camera, double share, double *seconds)
+{
+    double sum = 0;
+    int32_t at[3];
+    for (at[2] = b->lo[2]; at[2] < b->hi[2]; at[2]++)
+        for (at[1] = b->lo[1]; at[1] < b->hi[1]; at[1]++)
+            for (at[0] = b->lo[0]; at[0] < b->hi[0]; at[0]++) {
+                const size_t i = number_of(&c->grid, at);
+                const double samples = c->occupied[i] ? expected(&c->grid, camera, at) : 0;
+                sum += samples;
+                if (share > 0)
+                    seconds[i] = samples * share;
+            }
+    return sum;
+}
+
+cluster_status weights_measure(cluster *c, const reference_camera *camera, vodr_error *error)
+{
+    const size_t total = subvolumes_total(c->grid.count);
+    double *seconds = calloc(total, sizeof *seconds);
+    cluster_status status = cluster_agree(c->node, seconds ? CLUSTER_OK : cluster_no_memory(error), error);
+    for (int32_t i = 0; status == CLUSTER_OK && i < c->bricks.count; i++) {
+        const brick *b = &c->bricks.brick[i];
+        if (!b->voxels || b->cpu_s <= 0)
+            continue;
+        const double samples = share_out(c, &c->tree.node[i].box, camera, 0, seconds);
+        if (samples > 0)
+            share_out(c, &c->tree.node[i].box, camera, b->cpu_s / samples, seconds);
+    }
+    if (status == CLUSTER_OK)
+        status = cluster_reduce(c->node, seconds, total, true, error);
+    for (size_t i = 0; status == CLUSTER_OK && c->measured && i < total; i++)
+        if (c->measured[i] > 0 && seconds[i] > 0)
+            seconds[i] = (seconds[i] + c->measured[i]) / 2;
+    free(c->measured);
+    c->measured = seconds;
+    return status;
 }

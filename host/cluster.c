@@ -194,7 +194,7 @@ static host_status check(run_state *r, command_options *o, const char *path, hos
 {
     host_status status = reference_wish_settle(&o->wish, &o->view, error);
     if (status == HOST_OK)
-        status = cluster_options_check(&o->cluster, &o->wish, error);
+        status = cluster_options_check(&o->wish, &o->view, error);
     if (status == HOST_OK && cluster_rank(r->node) == 0)
         status = output_set_check(&o->outputs, &o->view, path, error);
     return status;
@@ -267,8 +267,10 @@ static host_status run(int argc, char **argv, host_error *error)
     if (status != HOST_OK)
         return status;
     status = parse_and_draw(&r, argc, argv, error);
-    if (cluster_rank(r.node) != 0 && !cluster_broken(r.node))
-        error->text[0] = '\0'; /* node 0 says it for all */
+    const bool speaks = cluster_rank(r.node) == 0 || cluster_broken(r.node);
+    if (status != HOST_OK && speaks && error->text[0])
+        host_say(error); /* before any node ends, upon which mpirun ends the others */
+    error->text[0] = '\0';
     cluster_leave(r.node);
     return status;
 }

@@ -116,13 +116,19 @@ cluster_options cluster_options_default(void)
                              .bytes_per_s = 10e9 / 8};
 }
 
-host_status cluster_options_check(const cluster_options *o, const reference_wish *wish, host_error *error)
+host_status cluster_options_check(const reference_wish *wish, const view_options *v, host_error *error)
 {
-    (void)o;
+    const reference_accel accel = wish->choice.accel;
+    vodr_machine machine;
     if (wish->choice.fixed)
         return host_fail(error, HOST_BAD_INPUT,
                          "--numbers fixed draws whole volumes: cluster has float, double and texture");
-    return HOST_OK;
+    host_status status = view_options_machine(v, &machine, error);
+    if (status == HOST_OK && machine.blend == VODR_BLEND_MIP && accel != REFERENCE_ACCEL_NONE &&
+        accel != REFERENCE_ACCEL_BEST)
+        return host_fail(error, HOST_BAD_INPUT, "--accel %s: of parts of a volume, mip has none and best",
+                         reference_accel_name(&wish->choice));
+    return status;
 }
 
 const char *cluster_balance_name(cluster_balance balance)

@@ -14,7 +14,7 @@ extern const option_table option_cluster;
 cluster_options cluster_options_default(void);
 
 /* Refuses what does not go together. */
-host_status cluster_options_check(const cluster_options *o, const reference_wish *wish, host_error *error);
+host_status cluster_options_check(const reference_wish *wish, const view_options *v, host_error *error);
 
 /* The words that the options take. */
 const char *cluster_balance_name(cluster_balance balance);

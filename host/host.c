@@ -12,3 +12,12 @@ host_status host_fail(host_error *error, host_status status, const char *format,
     }
     return status;
 }
+
+void host_say(host_error *error)
+{
+    for (char *c = error->text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 0x7f)
+            *c = '?';
+    fprintf(stderr, "vodr: %s\n", error->text);
+    error->text[0] = '\0';
+}

@@ -25,4 +25,7 @@ typedef struct host_error {
 host_status host_fail(host_error *error, host_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Says the sentence on standard error, in one line whatever a file's name or content put into it, and empties it. */
+void host_say(host_error *error);
+
 #endif

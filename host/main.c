@@ -43,15 +43,6 @@ static host_status dispatch(int argc, char **argv, host_error *error)
     return host_fail(error, HOST_BAD_INPUT, "there is no command '%s' (see `vodr --help`)", name);
 }
 
-/* One line, whatever a file's name or content put into the sentence. */
-static void print_error(host_error *error)
-{
-    for (char *c = error->text; *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 0x7f)
-            *c = '?';
-    fprintf(stderr, "vodr: %s\n", error->text);
-}
-
 int main(int argc, char **argv)
 {
     host_error error = {""};
@@ -62,6 +53,6 @@ int main(int argc, char **argv)
     if ((fflush(stdout) != 0 || ferror(stdout)) && status != HOST_BAD_INPUT)
         status = host_fail(&error, HOST_ENVIRONMENT, "cannot write to standard output: %s", strerror(errno));
     if (error.text[0] && status != HOST_OK)
-        print_error(&error);
+        host_say(&error);
     return (int)status;
 }

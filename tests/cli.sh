@@ -16,12 +16,12 @@ raw="v.raw --dims 16x8x8"
 
 # ---- help and version ----
 good "vodr --help" "$vodr" --help
-for command in render reference compare machine info sweep vectors; do
+for command in render reference cluster compare machine info sweep vectors; do
     expect "vodr --help names $command" "^  $command " ../out
 done
 good "vodr --version" "$vodr" --version
 expect "vodr --version" '^vodr [0-9]' ../out
-for command in reference compare machine info sweep vectors; do
+for command in reference cluster compare machine info sweep vectors; do
     good "vodr $command --help" "$vodr" $command --help
     expect "vodr $command --help has an example" '^Example' ../out
 done
