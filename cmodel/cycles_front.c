@@ -105,18 +105,15 @@ static bool may_conflict(const cycles *c, int32_t x, int32_t y, bool slice_start
     return false;
 }
 
-/* The visit's first fragment waits for its brick; false when it is unknown when that is loaded. */
-static bool wait_for_load(cycles *c)
+/* The visit's first fragment waits for its brick. When that is loaded is known then: the visits before are drained, so
+ * nothing that has not happened keeps its load back. */
+static void wait_for_load(cycles *c)
 {
     cycles_finish_load(c);
-    int64_t loaded = visit_at(c, c->current)->loaded;
-    if (loaded == CYCLE_UNKNOWN)
-        return false;
-    int64_t ready = max64(c->raster, loaded + 1);
+    int64_t ready = max64(c->raster, visit_at(c, c->current)->loaded + 1);
     c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(ready - c->raster);
     c->raster = ready;
     c->loading = false;
-    return true;
 }
 
 /* The next fragments are accepted and go on into the cache; the cycle in which it takes the first. */
@@ -161,8 +158,8 @@ static bool glide(cycles *c, const cycle_op *op)
     int32_t rest = op->px.count - c->op_done;
     if (miss && !c->eager && c->visit_fragments - c->visit_accepted <= c->fifo + 1)
         return false;
-    if (c->loading && !wait_for_load(c))
-        return false;
+    if (c->loading)
+        wait_for_load(c);
     bool slice_start = c->slice_starts || (op->slice_start && c->op_done == 0);
     if (may_conflict(c, op->px.x + c->op_done, op->px.y, slice_start, miss ? 1 : rest))
         return false;

@@ -23,7 +23,7 @@ while IFS= read -r line; do
         }
         NF != 4 || $4 == "" { print "must be: file | kind | text | reason"; exit }
         $2 !~ /^(line|branch|toggle)$/ { print "kind must be line, branch or toggle"; exit }
-        $2 == "toggle" { while (match($3, /[a-z][a-z_0-9]+/)) { # names of signals within an expression
+        $2 == "toggle" { gsub(/\[[^]]*\]/, " ", $3); while (match($3, /[a-z][a-z_0-9]+/)) { # names of signals within an expression
             name = substr($3, RSTART, RLENGTH)
             if (!is_there(name)) { print name " is not in " $1; exit }
             close($1)

@@ -90,7 +90,7 @@ static void draw_large_volume(bench *b)
     int32_t *dims = b->scene.input.dims_vox;
     b->scene.input.voxel_bytes = density_bytes(&b->machine);
     for (int c = 0; c < 3; c++)
-        dims[c] = (int32_t)rng_int(&b->random, 1, VODR_MAX_DIM_VOX);
+        dims[c] = rng_one_in(&b->random, 4) ? VODR_MAX_DIM_VOX : (int32_t)rng_int(&b->random, 1, VODR_MAX_DIM_VOX);
     while (!has_room(b))
         for (int c = 0; c < 3; c++)
             dims[c] -= rng_one_in(&b->random, 2) ? dims[c] / 2 : 0;

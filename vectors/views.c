@@ -104,6 +104,7 @@ static vodr_view wild(rng *r, const int32_t dims_vox[3], bool perspective, int32
             v.depth_first = rng_int(r, 1 << 16, ((int64_t)2 << 16) << depth_bits);
             v.depth_step = -rng_int(r, 0, (v.depth_first - (1 << 16)) / v.slices);
             step_bits = 31 + v.shift - depth_bits - shorter_bits;
+            step_bits = step_bits < 2 ? 2 : step_bits;
         }
         for (int i = 0; i < 3; i++) {
             v.base[i] = rng_int(r, -((int64_t)dims_vox[i] << 23), (int64_t)dims_vox[i] * 3 << 23);

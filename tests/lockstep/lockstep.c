@@ -1,6 +1,7 @@
 /* lockstep.c - runs the lock-step benches.
- *   lockstep [--transactions N] [--seed S] [BLOCK]...    20,000 transactions a machine of every block, from seed 1
- *   lockstep lerp | blend                                arithmetic, of all operands; run without a name, too
+ *   lockstep [--transactions N] [--seed S] [--episode E] [BLOCK]...    20,000 transactions a machine of every block,
+ * from seed 1; E, 1000, of them are of one seed lockstep lerp | blend                                arithmetic, of all
+ * operands; run without a name, too
  *
  * A bench that differs prints its seed, and `lockstep --transactions N --seed S BLOCK` draws it again first. */
 #include <inttypes.h>
@@ -18,14 +19,14 @@
 #include "lockstep.h"
 #include "modules.h"
 
-enum { EPISODE_TRANSACTIONS = 1000, LARGE_ONE_IN = 4 };
+enum { LARGE_ONE_IN = 4 };
 
 static const struct CMUnitTest exhaustive[] = {{.name = "lerp", .test_func = lockstep_lerp},
                                                {.name = "blend", .test_func = lockstep_blend}};
 
 enum { EXHAUSTIVE = sizeof exhaustive / sizeof *exhaustive };
 
-static uint64_t transactions = 20000, first_seed = 1;
+static uint64_t transactions = 20000, first_seed = 1, episode_transactions = 1000;
 
 /* ---- one episode ---- */
 
@@ -119,7 +120,7 @@ static void test_block(void **state)
     for (const char *const *m = what->machines; *m; m++) {
         uint64_t cycles = 0, done = 0;
         for (uint64_t seed = first_seed; good && done < transactions; seed++) {
-            uint64_t left = transactions - done, count = left < EPISODE_TRANSACTIONS ? left : EPISODE_TRANSACTIONS;
+            uint64_t left = transactions - done, count = left < episode_transactions ? left : episode_transactions;
             bool large = what->large && seed % LARGE_ONE_IN == 2;
             good = run_episode(what, *m, large, seed, &found, &count, &cycles);
             done += count;
@@ -147,12 +148,15 @@ int main(int argc, char **argv)
     for (; first + 1 < argc && strncmp(argv[first], "--", 2) == 0; first += 2) {
         char *end;
         uint64_t number = strtoull(argv[first + 1], &end, 10);
-        bool known = strcmp(argv[first], "--transactions") == 0 || strcmp(argv[first], "--seed") == 0;
-        if (!known || *end || end == argv[first + 1]) {
-            fprintf(stderr, "usage: lockstep [--transactions N] [--seed S] [BLOCK]...\n");
+        uint64_t *option = strcmp(argv[first], "--transactions") == 0 ? &transactions
+                           : strcmp(argv[first], "--seed") == 0       ? &first_seed
+                           : strcmp(argv[first], "--episode") == 0    ? &episode_transactions
+                                                                      : NULL;
+        if (!option || *end || end == argv[first + 1]) {
+            fprintf(stderr, "usage: lockstep [--transactions N] [--seed S] [--episode E] [BLOCK]...\n");
             return 2;
         }
-        *(argv[first][2] == 's' ? &first_seed : &transactions) = number;
+        *option = number;
     }
     for (int i = 0; i < VODR_BLOCK_COUNT; i++) {
         const block_bench *what = bench_of((vodr_block)i);
