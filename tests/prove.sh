@@ -38,11 +38,11 @@ same 'the row is what it was' "$root/rtl/formal/proofs.txt" ../rtl/formal/proofs
 says 1 'not true: Assert failed' "$as_is" 's/used <= 0/used <= used/' "$build" "$row"
 says 1 'not inductive in 1 steps' 's/ == .used.formal_word.*/ == formal_missed);/' "$as_is" "$build" "$row"
 says 1 'Unreached cover statement' 's/cover .!rst \&\& first/cover (rst \&\& first \&\& !clear_on_first_touch/' "$as_is" "$build" "$row"
-says 1 'it holds when cache_touched.v is broken by' 's/breaks 5 (.*)$/breaks 5 cache_touched.v s|first;|first; |/' 's/reg +first,/&/; s/reg +first/reg first;/; s/reg first;$/reg first/' "$build" "$row"
+says 1 'it holds when cache_touched.v is broken by' 's/breaks 5 .*/breaks 5 cache_touched.v s|endmodule|endmodule  |/' "$as_is" "$build" "$row"
 says 1 'changes nothing in cache_touched.v' 's/breaks 5 .*/breaks 5 cache_touched.v s|nowhere|there|/' "$as_is" "$build" "$row"
 says 1 'it has no broken variant' 's/^.*breaks 5.*$//' "$as_is" "$build" "$row"
 says 1 'it asserts nothing' '/assert/d' "$as_is" "$build" "$row"
-says 1 'Yosys cannot read it' "$as_is" 's/endmodule/endmodul/' "$build" "$row"
+says 1 'Yosys cannot read it' "$as_is" 's/else if/els if/' "$build" "$row"
 says 1 'make prove' 's/^.*at FRAME_LINES=4 .*$/\/\/: at FRAME_LINES=8 NUMBER_BITS=6/' "$as_is" --quick "$build"
 says 2 "there is no proof 'touched'; there are: " "$as_is" "$as_is" "$build" touched
 says 2 'usage: scripts/prove' "$as_is" "$as_is" --quick
