@@ -60,7 +60,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth mutation clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
 
 all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -123,6 +123,12 @@ mutation: $(BUILD)/gen/vodr_hw.vh ## judge mutants of every block by vectors, lo
 	@scripts/mutation $(BUILD)
 	@scripts/tables $(BUILD) mutation
 	@cat $(BUILD)/tables/mutation
+
+prove: ## prove what rtl/formal says of the Verilog, refute its broken variants, and write docs/table-proofs.md again (minutes)
+	@scripts/deps prove
+	@$(MAKE) -s $(BUILD)/gen/vodr_hw.vh
+	@scripts/prove $(BUILD)
+	@scripts/tables $(BUILD) proofs
 
 bench-cosim: ## measure the machine in Verilog beside the model in C, and write docs/cosimulation.md's table again
 	@scripts/deps rtl
@@ -190,7 +196,7 @@ docs: ## write docs/parameters.md and what is generated in the pages again
 	@$(MAKE) -s demo
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
 	@$(BUILD)/generate markdown $(HW) > docs/parameters.md
-	@scripts/tables $(BUILD) size rtl synthesis mutation table1 views cycles tour machines gpu
+	@scripts/tables $(BUILD) size rtl synthesis proofs mutation table1 views cycles tour machines gpu
 
 bench: ## measure the speed of frames, and of counting their cycles (written to docs/table-cycles.md)
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/speed $(BUILD)/bench/table_cycles
