@@ -6,22 +6,46 @@
 static const char *const machines[] = {"", "fb_bits=16 tf_bits=16", "blend_cycles=3",
                                        "nonblocking=1 nonblocking_fifo=5 blend_cycles=9", NULL};
 
+enum { NEARLY = 15 };
+
 static void draw(rng *random, vodr_machine *m)
 {
     m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
     m->density_bits = rng_one_in(random, 2) ? 8 : 12;
 }
 
+/* An opacity: nearly full, full but for a bit, or any. */
+static uint16_t opacity(bench *b)
+{
+    const int32_t bits = b->machine.fb_bits;
+    const uint64_t full = ((uint64_t)1 << bits) - 1;
+    switch (rng_int(&b->random, 0, 5)) {
+    case 0: return (uint16_t)(full - (uint64_t)rng_int(&b->random, 0, NEARLY));
+    case 1: return (uint16_t)(full ^ (uint64_t)1 << rng_int(&b->random, 0, bits - 1));
+    default: return (uint16_t)bench_bits(&b->random, bits);
+    }
+}
+
+/* A channel up to `most`: behind something nearly opaque its product lies on the border between two roundings. */
+static uint16_t channel(bench *b, int64_t most)
+{
+    const int64_t full = ((int64_t)1 << b->machine.fb_bits) - 1;
+    if (!rng_one_in(&b->random, 4))
+        return (uint16_t)rng_int(&b->random, 0, most);
+    int64_t through = rng_int(&b->random, 1, NEARLY), half = 2 * rng_int(&b->random, 0, through - 1) + 1;
+    int64_t value = half * full / (2 * through) + rng_int(&b->random, 0, 1);
+    return (uint16_t)(value < most ? value : most);
+}
+
 /* A premultiplied colour, or in mip a density. */
 static uint64_t word(bench *b, bool written)
 {
-    int32_t bits = b->machine.fb_bits;
-    vodr_rgba p = {.a = (uint16_t)bench_bits(&b->random, bits)};
+    vodr_rgba p = {.a = opacity(b)};
     if (b->machine.blend == VODR_BLEND_MIP)
         return written ? bench_bits(&b->random, b->machine.density_bits) | PIXEL_WORD_WRITTEN : 0;
-    p.r = (uint16_t)rng_int(&b->random, 0, p.a);
-    p.g = rng_one_in(&b->random, 4) ? p.a : (uint16_t)rng_int(&b->random, 0, p.a);
-    p.b = rng_one_in(&b->random, 4) ? 0 : (uint16_t)rng_int(&b->random, 0, p.a);
+    p.r = channel(b, p.a);
+    p.g = rng_one_in(&b->random, 4) ? p.a : channel(b, p.a);
+    p.b = rng_one_in(&b->random, 4) ? 0 : channel(b, p.a);
     return pixel_word(&b->machine, p);
 }
 

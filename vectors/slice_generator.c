@@ -4,12 +4,15 @@
 
 static const char *const machines[] = {"", NULL};
 
-enum { SLICES_A_VIEW = 2000, SLICES_A_BRICK = 60 };
+enum { SLICES_A_VIEW = 2000, SLICES_A_BRICK = 60, MOST_CYCLES = 20000 };
 
 static void draw(rng *random, vodr_machine *m)
 {
     m->blend = (int32_t)rng_int(random, VODR_BLEND_OVER, VODR_BLEND_MIP);
     m->slice_setup_cycles = rng_one_in(random, 3) ? 1 : (int32_t)rng_int(random, 2, 9);
+    if (rng_one_in(random, 3)) /* every bit of the count: counts of all lengths, many of a single bit */
+        m->slice_setup_cycles =
+            (int32_t)(((uint64_t)1 << rng_int(random, 3, 15)) | (rng_one_in(random, 2) ? rng_next(random) % 256 : 0));
 }
 
 /* Frames and slices as many as there can be, so that numbers have all their bits. */
@@ -19,9 +22,11 @@ static void look(rng *random, const int32_t dims_vox[3], vodr_view *view)
     (void)dims_vox;
     if (rng_one_in(random, 2))
         return;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
+        const int32_t largest = i == 2 ? VODR_MAX_SLICES : VODR_MAX_SIZE_PX;
         if (rng_one_in(random, 2))
-            *sizes[i] = (int32_t)rng_int(random, 1, i == 2 ? VODR_MAX_SLICES : VODR_MAX_SIZE_PX);
+            *sizes[i] = rng_one_in(random, 2) ? largest : (int32_t)rng_int(random, 1, largest);
+    }
 }
 
 /* A range within [0, size], not empty: all of it, its first or last place, or any. */
@@ -61,7 +66,7 @@ static void traffic(bench *b, uint64_t transactions)
     const slice_generator_in in = {.brick = &brick, .slice = &ready};
     uint64_t done = 0, most = transactions < SLICES_A_VIEW ? transactions : SLICES_A_VIEW;
     int64_t haste = 1;
-    for (; done < most && !bench_differs(b); b->cycles++) {
+    for (; done < most && b->cycles < MOST_CYCLES && !bench_differs(b); b->cycles++) {
         bool taken = brick.valid && out.brick.ready;
         if (rng_one_in(&b->random, 100))
             haste = rng_one_in(&b->random, 2) ? rng_int(&b->random, 2, 30) : 1;
