@@ -156,6 +156,7 @@ static void print_summary(const run_state *r)
 {
     const cluster_report *p = &r->result.report;
     const cluster_options *o = &r->options->cluster;
+    const reference_choice *choice = &r->options->wish.choice;
     const scene *s = &r->scene.scene;
     uint64_t sent = 0, held = 0;
     for (int32_t i = 0; i < p->nodes; i++) {
@@ -163,7 +164,11 @@ static void print_summary(const run_state *r)
         held = p->share[i].held_bytes > held ? p->share[i].held_bytes : held;
     }
     scene_print_volume(s);
-    printf("frame              %dx%d pixels of %d slices\n", s->view.width_px, s->view.height_px, s->view.slices);
+    printf("frame              %dx%d pixels, ", s->view.width_px, s->view.height_px);
+    if (choice->method == REFERENCE_RAYCAST)
+        printf("rays of a sample every %g voxels\n", choice->step_vox);
+    else
+        printf("%d slices\n", s->view.slices);
     printf("nodes              %d%s, balance %s by %s, compositing %s\n", p->nodes, p->simulated ? " simulated" : "",
            cluster_balance_name(o->balance), cluster_weight_name(o->weight), cluster_composite_name(o->composite));
     printf("sub-volumes        %lld of %lld of %d voxels a side are not empty\n", (long long)p->occupied,
