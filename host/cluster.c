@@ -272,7 +272,12 @@ static host_status run(int argc, char **argv, host_error *error)
     if (status != HOST_OK)
         return status;
     status = parse_and_draw(&r, argc, argv, error);
-    const bool speaks = cluster_rank(r.node) == 0 || cluster_broken(r.node);
+    const bool broken = cluster_broken(r.node), speaks = cluster_rank(r.node) == 0 || broken;
+    if (status != HOST_OK && broken) { /* the others cannot say which node it is */
+        const host_error own = *error;
+        host_fail(error, status, "node %d of %d: %.*s", cluster_rank(r.node), cluster_ranks(r.node),
+                  (int)sizeof own.text - 40, own.text);
+    }
     if (status != HOST_OK && speaks && error->text[0])
         host_say(error); /* before any node ends, upon which mpirun ends the others */
     error->text[0] = '\0';
