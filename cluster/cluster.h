@@ -67,8 +67,9 @@ typedef enum cluster_balance { CLUSTER_STATIC, CLUSTER_OCTREE, CLUSTER_PAPER, CL
 typedef enum cluster_weight { CLUSTER_COUNT, CLUSTER_SAMPLES, CLUSTER_TIME } cluster_weight;
 typedef enum cluster_composite { CLUSTER_DIRECT, CLUSTER_BINARY_SWAP, CLUSTER_RADIX_K } cluster_composite;
 
-/* By time, so many frames are drawn before the volume is divided anew: the least of their times counts. */
-enum { CLUSTER_TIMED_FRAMES = 3 };
+/* By time, so many frames are drawn before the volume is divided anew, the least of their times counts; and so many
+ * divisions are tried at most, the one whose slowest node is fastest stays. */
+enum { CLUSTER_TIMED_FRAMES = 3, CLUSTER_TIMED_DIVISIONS = 6 };
 
 enum { CLUSTER_MAX_NODES = 1024, CLUSTER_LEAST_SUBVOLUME_VOX = 4, CLUSTER_MOST_SUBVOLUME_VOX = 64 };
 
@@ -101,7 +102,8 @@ cluster_status cluster_open(const cluster_options *options, const cluster_source
 void cluster_close(cluster *c);
 
 /* Divides the volume for what `job` shows, whose window is the values lo to hi, and loads this node's part. Callable
- * again: voxels that stay are not loaded anew. */
+ * again: boxes that stay are not loaded anew. By time it is to be called before each frame, all of one job, and divides
+ * when enough is known. */
 cluster_status cluster_place(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error);
 
 /* Draws into rgba[4*width*height] of node 0, as reference_march() does; NULL elsewhere. After cluster_place(). */

@@ -138,8 +138,7 @@ void node_message_free(node_message *m)
 static cluster_status lost(cluster_node *n, vodr_error *error)
 {
     n->broken = true;
-    return cluster_fail(error, CLUSTER_ENVIRONMENT, "node %d has lost the others: a message failed, or memory is out",
-                        n->rank);
+    return cluster_fail(error, CLUSTER_ENVIRONMENT, "a message to or from the others failed, or memory for it is out");
 }
 
 cluster_status cluster_reduce(cluster_node *node, double *value, size_t count, bool most, vodr_error *error)

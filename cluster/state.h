@@ -41,11 +41,18 @@ struct cluster {
     cluster_report report;
     double scan_s;
     int32_t frames; /* drawn since the volume was divided */
+    int32_t tries;  /* by time: divisions measured; at CLUSTER_TIMED_DIVISIONS the best of them stays */
+    kd_tree best;   /* of these */
+    cluster_share *best_share;
+    double best_s; /* its slowest node */
 };
 
 /* Seconds since some moment, and of all threads of this process. */
 double cluster_now_s(void);
 double cluster_cpu_s(void);
+
+/* Frees the tree of planes and what it was made from. */
+void division_free(cluster *c);
 
 /* Whether a node of the cluster is drawn by this process. */
 static inline bool cluster_holds(const cluster *c, int32_t owner)

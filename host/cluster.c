@@ -156,6 +156,7 @@ static void print_summary(const run_state *r)
 {
     const cluster_report *p = &r->result.report;
     const cluster_options *o = &r->options->cluster;
+    const reference_choice *choice = &r->options->wish.choice;
     const scene *s = &r->scene.scene;
     uint64_t sent = 0, held = 0;
     for (int32_t i = 0; i < p->nodes; i++) {
@@ -163,7 +164,11 @@ static void print_summary(const run_state *r)
         held = p->share[i].held_bytes > held ? p->share[i].held_bytes : held;
     }
     scene_print_volume(s);
-    printf("frame              %dx%d pixels of %d slices\n", s->view.width_px, s->view.height_px, s->view.slices);
+    printf("frame              %dx%d pixels, ", s->view.width_px, s->view.height_px);
+    if (choice->method == REFERENCE_RAYCAST)
+        printf("rays of a sample every %g voxels\n", choice->step_vox);
+    else
+        printf("%d slices\n", s->view.slices);
     printf("nodes              %d%s, balance %s by %s, compositing %s\n", p->nodes, p->simulated ? " simulated" : "",
            cluster_balance_name(o->balance), cluster_weight_name(o->weight), cluster_composite_name(o->composite));
     printf("sub-volumes        %lld of %lld of %d voxels a side are not empty\n", (long long)p->occupied,
@@ -267,7 +272,12 @@ static host_status run(int argc, char **argv, host_error *error)
     if (status != HOST_OK)
         return status;
     status = parse_and_draw(&r, argc, argv, error);
-    const bool speaks = cluster_rank(r.node) == 0 || cluster_broken(r.node);
+    const bool broken = cluster_broken(r.node), speaks = cluster_rank(r.node) == 0 || broken;
+    if (status != HOST_OK && broken) { /* the others cannot say which node it is */
+        const host_error own = *error;
+        host_fail(error, status, "node %d of %d: %.*s", cluster_rank(r.node), cluster_ranks(r.node),
+                  (int)sizeof own.text - 40, own.text);
+    }
     if (status != HOST_OK && speaks && error->text[0])
         host_say(error); /* before any node ends, upon which mpirun ends the others */
     error->text[0] = '\0';

@@ -45,6 +45,16 @@ KERNEL void ray_clip(double start, double step, int32_t low, int32_t high, int64
     *lo = enter;
 }
 
+/* The first sample from `lo` on that lies in the volume, given that sample `hi` does. */
+KERNEL int64_t ray_enter(const double start[3], const double step[3], const int32_t whole_vox[3], int64_t lo,
+                         int64_t hi)
+{
+    for (int a = 0; a < 3; a++)
+        if (step[a] != 0)
+            lo = ray_crossing(start[a], step[a], step[a] > 0 ? 0 : whole_vox[a], lo, hi);
+    return lo;
+}
+
 /* A ray without samples, whose places lie in the first of the voxels at hand. */
 KERNEL kernel_ray ray_none(const kernel_part *part)
 {
@@ -79,13 +89,13 @@ KERNEL kernel_ray ray_make(const kernel_frame *f, int32_t x, int32_t y)
     for (int a = 0; a < 3; a++) {
         o[a] = ray_along(o[a], c->first, d[a]);
         d[a] = c->spacing * d[a];
-        ray_clip(o[a], d[a], 0, part->whole_vox[a], &lo, &hi);
     }
-    const int64_t enter = lo;
-    for (int a = 0; part->boxed && a < 3; a++)
+    int64_t enter = lo;
+    for (int a = 0; a < 3 && lo < hi; a++)
         ray_clip(o[a], d[a], part->lo_vox[a], part->hi_vox[a], &lo, &hi);
     if (lo >= hi)
         return ray;
+    enter = part->boxed ? ray_enter(o, d, part->whole_vox, enter, lo) : lo;
     ray.count = (int32_t)(hi - lo);
     ray.skipped = (int32_t)(lo - enter);
     ray.first = (int32_t)lo;
