@@ -22,7 +22,7 @@
 //: shrinks pixel_cache.v s/arriving = line_of.*/arriving = {4'd0, colour_x[2:1]};/
 //: hole which line a pixel has, line_of(), is not proved: a product of two 16-bit registers; vectors and lock-step compare its addresses
 //: hole a hit gives what was last written is bounded for the whole cache; of its parts, cache_lines and cache_tags, it is proved by induction
-//: hole a non-blocking cache, several ways and BLEND_CYCLES over 3 as a whole: their bounded proofs take too long; their parts are proved
+//: hole a non-blocking cache, several ways and BLEND_CYCLES over 3 as a whole: their bounded proofs were not run to the end; their parts are proved
 //: breaks 20 pixel_cache.v s/evicts  = front_replaces . .dirty/evicts  = front_replaces \& 1'b0 \& (dirty/
 //: breaks 20 pixel_cache.v s/if .soils.$/if (1'b0)/
 
