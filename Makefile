@@ -39,12 +39,13 @@ TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
 REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_gpu_record,$(TESTS))
+MIP_CASES := $(BUILD)/bench/record/mip_case.o $(BUILD)/bench/lib/synthetic.o # cases of the maximum are the record's
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
             host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
 # The same of bench/mip_frames.
-MIP      := bench/record/mip_frames bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
+MIP      := bench/record/mip_frames bench/record/mip_case bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
             tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
 SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
@@ -255,13 +256,14 @@ $(BUILD)/tests/lockstep/lockstep: $(LOCKSTEP) $(TESTLIB) $(BUILD)/libhost.a $(BU
 
 $(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
+$(REFERENCE_TESTS:%=%.o): INCLUDES += -Ibench/record -Ibench/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
 $(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib -Ibench/lib
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
-$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(MIP_CASES) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs
