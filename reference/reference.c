@@ -313,8 +313,8 @@ static kernel_mode mode_of(const reference *r, const reference_march_job *job)
     if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_NONE)
         return KERNEL_MIP;
     if (job->blend == REFERENCE_MIP)
-        return job->accel == REFERENCE_ACCEL_BEST && bounds_shape(r->volume.dims_vox, &bounds) > 0 ? KERNEL_SEARCH
-                                                                                                   : KERNEL_LEAP;
+        return job->accel == REFERENCE_ACCEL_BEST && bounds_shape(r->volume.dims_vox, true, &bounds) > 0 ? KERNEL_SEARCH
+                                                                                                         : KERNEL_LEAP;
     return job->shading == REFERENCE_PHONG || job->table.rows > 1 ? KERNEL_LIT : KERNEL_OVER;
 }
 

@@ -172,6 +172,7 @@ static void check_maxima(const json_t *result)
             fail_msg("case %" PRIu64 ": the maxima add up to %.9g on the card and to %.9g here", i + 1, card, t.sum);
     }
     assert_int_equal(number(result, "frames"), t.frames);
+    assert_int_equal(t.differ, 0);
     check_samples(result, &t);
 }
 
