@@ -48,12 +48,12 @@ RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_
 MIP      := bench/record/mip_frames bench/record/mip_case bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
             tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
-SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
+SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/mip bench/model bench/peers-lib bench/reference .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-mip bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -126,6 +126,11 @@ bench-reference: ## measure the reference renderer on the CPU beside VTK, and wr
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/reference_frames
 	@scripts/tables $(BUILD) reference
 	@cat $(BUILD)/tables/reference
+
+bench-mip: ## the paper on the maximum beside ours, VTK and teem (a quarter of an hour); writes docs/table-mip.md again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/mip_frames $(BUILD)/bench/reference_frames
+	@scripts/tables $(BUILD) mip
+	@cat $(BUILD)/tables/mip
 
 bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
 	@scripts/tables $(BUILD) sweep

@@ -3,8 +3,9 @@
  *
  *   mip_frames DEVICE matrix CASES
  *   mip_frames DEVICE table|figure NAME VOLUME.raw TYPE FROM TO SIDE_PX ROUNDS [THREADS]
- * DEVICE: cuda or cpu; TYPE: uint8 or int16; FROM, TO: WxHxD voxels, in the file and enlarged. A table is of blocks of
- * 2 voxels, a figure of all sizes to the volume's. Every picture is held against none's: exit 1 when one differs. */
+ * DEVICE: cuda, cpu, or plain: the CPU without vector instructions of its own and without packed cells. TYPE: uint8 or
+ * int16; FROM, TO: WxHxD voxels, in the file and enlarged. A table is of every --accel in blocks of 2 voxels, a figure
+ * of `seed` in all sizes to the volume's. Every picture is held against none's: exit 1 when one differs. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@
 #include "mip_case.h"
 #include "stopwatch.h"
 
-enum { MAX_ROUNDS = 99, MAX_ENTRIES = 8 };
+enum { MAX_ROUNDS = 99 };
 
 static bool say(reference_status status, const char *what, const vodr_error *error)
 {
@@ -151,12 +152,14 @@ static void print_entry(const request *q, const char *device, int view, entry *e
     const double ms = stopwatch_median(e->ms, rounds), cpu_ms = stopwatch_median(e->cpu_ms, rounds);
     printf("{\"result\": \"mip\", \"device\": \"%s\", \"volume\": \"%s\", \"size_vox\": \"%dx%dx%d\", \"size_px\": %d, "
            "\"view\": \"%s\", \"accel\": \"%s\", \"block_vox\": %d, \"ms\": %.4f, \"least_ms\": %.4f, \"most_ms\": "
-           "%.4f, \"cpu_ms\": %.4f, \"samples\": %llu, \"preprocess_ms\": %.3f}\n",
+           "%.4f, \"cpu_ms\": %.4f, \"least_cpu_ms\": %.4f, \"samples\": %llu, \"preprocess_ms\": %.3f}\n",
            device, q->name, q->to[0], q->to[1], q->to[2], q->side_px, views[view].name, mip_accel_name(e->accel),
-           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, (unsigned long long)e->samples, e->preprocess_ms);
+           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, e->cpu_ms[0], (unsigned long long)e->samples,
+           e->preprocess_ms);
 }
 
-/* Draws the entries in turn, the first of which is none's, and holds all pictures against its. */
+/* Draws the entries in turn; the picture of `none`, of these or an earlier call, is what all others are held against.
+ */
 static bool time_entries(const request *q, reference *r, const reference_march_job *job, int view, entry *entries,
                          int count, double *pictures[2])
 {
@@ -167,14 +170,14 @@ static bool time_entries(const request *q, reference *r, const reference_march_j
             entry *e = &entries[i];
             reference_stats stats;
             double begin_s = cpu_now_s();
-            good = draw(r, *job, e->accel, e->block_vox, pictures[i > 0], &stats);
+            good = draw(r, *job, e->accel, e->block_vox, pictures[e->accel != REFERENCE_ACCEL_NONE], &stats);
             e->samples = stats.samples;
             e->preprocess_ms += stats.preprocess_ms;
             if (round >= 0) {
                 e->ms[round] = stats.draw_ms;
                 e->cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
             }
-            if (good && i > 0 && memcmp(pictures[0], pictures[1], bytes) != 0) {
+            if (good && e->accel != REFERENCE_ACCEL_NONE && memcmp(pictures[0], pictures[1], bytes) != 0) {
                 fprintf(stderr, "mip_frames: %s, view %s, %s: not the picture of none\n", q->name, views[view].name,
                         mip_accel_name(e->accel));
                 good = false;
@@ -193,17 +196,15 @@ static bool draw_view(const request *q, reference *r, int view, double *pictures
     mip_fill_ramp(table);
     if (!make_job(q, view, table, &job))
         return false;
+    entry entries[REFERENCE_ACCELS] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 2}};
     int32_t longest = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
     longest = longest > q->to[2] ? longest : q->to[2];
-    bool good = true;
-    for (int32_t edge = 2; good && edge <= (q->figure ? longest : 2); edge *= 2) {
-        entry entries[MAX_ENTRIES] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 0}};
-        int count = 1;
-        for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
-            entries[count++] = (entry){.accel = (reference_accel)accel, .block_vox = edge};
-        for (int i = 0; i < count; i++)
-            entries[i].block_vox = edge;
-        good = time_entries(q, r, &job, view, entries, count, pictures);
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+        entries[accel] = (entry){.accel = (reference_accel)accel, .block_vox = 2};
+    bool good = time_entries(q, r, &job, view, entries, q->figure ? 1 : REFERENCE_ACCELS, pictures);
+    for (int32_t edge = 2; good && q->figure && edge <= longest; edge *= 2) {
+        entry seed = {.accel = REFERENCE_ACCEL_SEED, .block_vox = edge};
+        good = time_entries(q, r, &job, view, &seed, 1, pictures);
     }
     return good;
 }
@@ -234,7 +235,9 @@ static bool read_size(const char *text, int32_t size[3])
 
 int main(int argc, char **argv)
 {
-    reference_options options = {.device = argc > 1 && strcmp(argv[1], "cuda") == 0 ? REFERENCE_CUDA : REFERENCE_CPU};
+    reference_options options = {.device = argc > 1 && strcmp(argv[1], "cuda") == 0 ? REFERENCE_CUDA : REFERENCE_CPU,
+                                 .simd =
+                                     argc > 1 && strcmp(argv[1], "plain") == 0 ? VODR_SIMD_PORTABLE : VODR_SIMD_BEST};
     if (argc == 4 && strcmp(argv[2], "matrix") == 0)
         return matrix(&options, atoi(argv[3]));
     if (argc == 10 || argc == 11) {
@@ -249,7 +252,8 @@ int main(int argc, char **argv)
             q.rounds > 0 && q.rounds <= MAX_ROUNDS)
             return figures(&options, &q);
     }
-    fputs("usage: mip_frames cuda|cpu matrix CASES | table|figure NAME VOLUME.raw uint8|int16 FROM TO SIDE_PX ROUNDS "
+    fputs("usage: mip_frames cuda|cpu|plain matrix CASES | table|figure NAME VOLUME.raw uint8|int16 FROM TO SIDE_PX "
+          "ROUNDS "
           "[THREADS]\n",
           stderr);
     return 2;
