@@ -144,6 +144,7 @@ typedef struct entry {
     int32_t block_vox;
     uint64_t samples;
     double ms[MAX_ROUNDS], cpu_ms[MAX_ROUNDS], preprocess_ms;
+    double first_cpu_ms; /* of the frame that warms up: with what is made once of the volume */
 } entry;
 
 static void print_entry(const request *q, const char *device, int view, entry *e)
@@ -152,10 +153,11 @@ static void print_entry(const request *q, const char *device, int view, entry *e
     const double ms = stopwatch_median(e->ms, rounds), cpu_ms = stopwatch_median(e->cpu_ms, rounds);
     printf("{\"result\": \"mip\", \"device\": \"%s\", \"volume\": \"%s\", \"size_vox\": \"%dx%dx%d\", \"size_px\": %d, "
            "\"view\": \"%s\", \"accel\": \"%s\", \"block_vox\": %d, \"ms\": %.4f, \"least_ms\": %.4f, \"most_ms\": "
-           "%.4f, \"cpu_ms\": %.4f, \"least_cpu_ms\": %.4f, \"samples\": %llu, \"preprocess_ms\": %.3f}\n",
+           "%.4f, \"cpu_ms\": %.4f, \"least_cpu_ms\": %.4f, \"first_cpu_ms\": %.4f, \"samples\": %llu, "
+           "\"preprocess_ms\": %.3f}\n",
            device, q->name, q->to[0], q->to[1], q->to[2], q->side_px, views[view].name, mip_accel_name(e->accel),
-           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, e->cpu_ms[0], (unsigned long long)e->samples,
-           e->preprocess_ms);
+           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, e->cpu_ms[0], e->first_cpu_ms,
+           (unsigned long long)e->samples, e->preprocess_ms);
 }
 
 /* Draws the entries in turn; the picture of `none`, of these or an earlier call, is what all others are held against.
@@ -173,9 +175,12 @@ static bool time_entries(const request *q, reference *r, const reference_march_j
             good = draw(r, *job, e->accel, e->block_vox, pictures[e->accel != REFERENCE_ACCEL_NONE], &stats);
             e->samples = stats.samples;
             e->preprocess_ms += stats.preprocess_ms;
-            if (round >= 0) {
+            const double cpu_ms = 1e3 * (cpu_now_s() - begin_s);
+            if (round < 0) {
+                e->first_cpu_ms = cpu_ms;
+            } else {
                 e->ms[round] = stats.draw_ms;
-                e->cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
+                e->cpu_ms[round] = cpu_ms;
             }
             if (good && e->accel != REFERENCE_ACCEL_NONE && memcmp(pictures[0], pictures[1], bytes) != 0) {
                 fprintf(stderr, "mip_frames: %s, view %s, %s: not the picture of none\n", q->name, views[view].name,
