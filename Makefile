@@ -47,20 +47,21 @@ TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
 REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_cluster $(BUILD)/tests/test_gpu_record,$(TESTS))
+MIP_CASES := $(BUILD)/bench/record/mip_case.o $(BUILD)/bench/lib/synthetic.o # cases of the maximum are the record's
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
             host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
 # The same of bench/mip_frames.
-MIP      := bench/record/mip_frames bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
+MIP      := bench/record/mip_frames bench/record/mip_case bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
             tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
-SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
+SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/mip bench/model bench/peers-lib bench/reference .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-mip bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
 
 all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -156,6 +157,11 @@ bench-reference: ## measure the reference renderer on the CPU beside VTK, and wr
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/reference_frames
 	@scripts/tables $(BUILD) reference
 	@cat $(BUILD)/tables/reference
+
+bench-mip: ## the paper on the maximum beside ours, VTK and teem (a quarter of an hour); writes docs/table-mip.md again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/mip_frames $(BUILD)/bench/reference_frames
+	@scripts/tables $(BUILD) mip
+	@cat $(BUILD)/tables/mip
 
 bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
 	@scripts/tables $(BUILD) sweep
@@ -308,6 +314,7 @@ $(BUILD)/tests/mutation/mutants: $(MUTATION) $(BUILD)/libhost.a $(BUILD)/libvect
 
 $(BUILD)/vectors/%.o: INCLUDES := -I$(BUILD)/gen -Icmodel -Irtl -Ivectors
 $(BUILD)/tests/%.o: INCLUDES += -Itests/lib
+$(REFERENCE_TESTS:%=%.o): INCLUDES += -Ibench/record -Ibench/lib
 $(BUILD)/bench/%.o: INCLUDES += -Ibench/lib
 $(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib -Ibench/lib
 
@@ -318,7 +325,7 @@ $(BUILD)/tests/test_no_memory: private WRAPPED := $(addprefix -Wl$(comma)--wrap=
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) $(WRAPPED) -o $@ $^ -lcmocka $(LIBRARIES)
 
-$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
+$(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(MIP_CASES) $(BUILD)/libhost.a $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs

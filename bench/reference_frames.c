@@ -73,14 +73,17 @@ static bool make_rays(const request *q, reference_camera *rays)
 
 static bool make_job(const request *q, const double *table, reference_march_job *job)
 {
-    static const char *const accels[] = {"none", "block", "best"};
-    int accel = 0;
-    while (accel < 2 && strcmp(q->accel, accels[accel]) != 0)
-        accel++;
+    static const struct {
+        const char *name;
+        reference_accel accel;
+    } accels[] = {{"none", REFERENCE_ACCEL_NONE}, {"block", REFERENCE_ACCEL_BLOCK}, {"best", REFERENCE_ACCEL_BEST}};
+    int i = 0;
+    while (i < 2 && strcmp(q->accel, accels[i].name) != 0)
+        i++;
     *job = (reference_march_job){.blend = strcmp(q->mode, "mip") == 0 ? REFERENCE_MIP : REFERENCE_OVER,
                                  .filter = REFERENCE_LINEAR,
                                  .shading = strcmp(q->mode, "shaded") == 0 ? REFERENCE_PHONG : REFERENCE_UNLIT,
-                                 .accel = (reference_accel)accel,
+                                 .accel = accels[i].accel,
                                  .block_vox = BLOCK_VOX,
                                  .termination = 0.998,
                                  .table = {.columns = COLUMNS, .rows = 1, .rgba = table},

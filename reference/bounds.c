@@ -36,7 +36,7 @@ void bounds_decode(const bounds_code *code, kernel_filter filter, kernel_bounds 
 
 /* ---- shapes ---- */
 
-size_t bounds_shape(const int32_t dims_vox[3], kernel_bounds *b)
+size_t bounds_shape(const int32_t dims_vox[3], bool bricks, kernel_bounds *b)
 {
     int64_t codes = 0;
     bool one = false;
@@ -45,7 +45,7 @@ size_t bounds_shape(const int32_t dims_vox[3], kernel_bounds *b)
         int64_t count = 1;
         for (int a = 0; a < 3; a++) {
             b->count[k][a] = bounds_count(dims_vox[a], 1 << k);
-            count *= b->count[k][a];
+            count *= k == 0 && bricks ? bounds_bricks(b->count[k][a]) * BOUND_BRICK : b->count[k][a];
         }
         if (count > INT32_MAX)
             return 0;
@@ -82,13 +82,6 @@ static void raise_row(const reference_volume *v, const bounds_code *code, size_t
 /* The greatest of each block's voxels of a row. */
 static void block_row(const uint16_t *row, int32_t size, int32_t edge_vox, uint16_t *codes)
 {
-    if (edge_vox == 1) {
-        codes[0] = row[0];
-        for (int32_t i = 1; i < size; i++)
-            codes[i] = row[i - 1] > row[i] ? row[i - 1] : row[i];
-        codes[size] = row[size - 1];
-        return;
-    }
     for (int32_t i = 0; i < bounds_count(size, edge_vox); i++) {
         int32_t lo, hi;
         bounds_voxels(i, edge_vox, size, &lo, &hi);
@@ -118,8 +111,6 @@ void bounds_fill(const reference_volume *v, const bounds_code *code, int32_t edg
         }
 }
 
-/* ---- windows ---- */
-
 static uint16_t *grid_row(const kernel_bounds *b, int32_t k, int32_t l, int32_t j, uint16_t *codes)
 {
     const int32_t *count = b->count[k];
@@ -132,6 +123,85 @@ static void raise_codes(uint16_t *row, const uint16_t *other, int32_t count)
     for (int32_t i = 0; i < count; i++)
         row[i] = other[i] > row[i] ? other[i] : row[i];
 }
+
+/* ---- cells ---- */
+
+/* Cells done at a time along a row, a multiple of BOUND_BRICK: what is on the way to bricks stays in the first cache.
+ */
+enum { STRETCH = 512 };
+
+/* The cells of a layer of bricks that lie in a row of them, `count` along x from x0 on. */
+typedef struct brick_rows {
+    int32_t x0, count;
+    uint16_t codes[BOUND_BRICK * BOUND_BRICK][STRETCH]; /* rows y fastest; 0 beyond the volume */
+} brick_rows;
+
+/* Cells [x0, x0 + count) of row (y, z). */
+static void cell_row(const reference_volume *v, const bounds_code *code, int32_t y, int32_t z, int32_t x0,
+                     int32_t count, uint16_t *out)
+{
+    const int32_t *size = v->dims_vox, lo = x0 > 0 ? x0 - 1 : 0, hi = x0 + count < size[0] ? x0 + count : size[0];
+    uint16_t row[STRETCH + 1] = {0}, *first = row + (x0 == 0);
+    int32_t y0, y1, z0, z1;
+    bounds_voxels(y, 1, size[1], &y0, &y1);
+    bounds_voxels(z, 1, size[2], &z0, &z1);
+    for (int32_t k = z0; k < z1; k++)
+        for (int32_t j = y0; j < y1; j++)
+            raise_row(v, code, ((size_t)k * (size_t)size[1] + (size_t)j) * (size_t)size[0] + (size_t)lo, hi - lo,
+                      first);
+    for (int32_t i = 0; i < count; i++)
+        out[i] = row[i] > row[i + 1] ? row[i] : row[i + 1];
+}
+
+static void store_bricks(const kernel_bounds *b, const brick_rows *rows, int32_t j, int32_t l, uint16_t *codes)
+{
+    const int64_t across = bounds_bricks(b->count[0][0]), down = bounds_bricks(b->count[0][1]);
+    uint16_t *out = codes + ((l * down + j) * across + rows->x0 / BOUND_BRICK) * BOUND_BRICK_CELLS;
+    for (int32_t i = 0; i < rows->count; i += BOUND_BRICK, out += BOUND_BRICK_CELLS)
+        for (int32_t n = 0; n < BOUND_BRICK * BOUND_BRICK; n++)
+            memcpy(out + (size_t)n * BOUND_BRICK, rows->codes[n] + i, BOUND_BRICK * sizeof *out);
+}
+
+/* Blocks of two cells a side. */
+static void store_blocks(const kernel_bounds *b, const brick_rows *rows, int32_t j, int32_t l, uint16_t *codes)
+{
+    for (int32_t n = 0; n < 4; n++) {
+        const int32_t y = 2 * j + n % 2, z = 2 * l + n / 2;
+        uint16_t most[STRETCH];
+        if (y >= b->count[1][1] || z >= b->count[1][2])
+            continue;
+        memcpy(most, rows->codes[2 * (n % 2) + 8 * (n / 2)], sizeof most);
+        raise_codes(most, rows->codes[2 * (n % 2) + 8 * (n / 2) + 1], rows->count);
+        raise_codes(most, rows->codes[2 * (n % 2) + 8 * (n / 2) + 4], rows->count);
+        raise_codes(most, rows->codes[2 * (n % 2) + 8 * (n / 2) + 5], rows->count);
+        uint16_t *out = grid_row(b, 1, z, y, codes) + rows->x0 / 2;
+        for (int32_t i = 0; 2 * i < rows->count && rows->x0 / 2 + i < b->count[1][0]; i++)
+            out[i] = most[2 * i] > most[2 * i + 1] ? most[2 * i] : most[2 * i + 1];
+    }
+}
+
+void bounds_fill_cells(const reference_volume *v, const bounds_code *code, const kernel_bounds *b, int32_t r0,
+                       int32_t r1, uint16_t *codes)
+{
+    const int32_t *count = b->count[0];
+    brick_rows rows;
+    for (int32_t l = r0; l < r1; l++)
+        for (int32_t j = 0; j < bounds_bricks(count[1]); j++)
+            for (int32_t x0 = 0; x0 < count[0]; x0 += STRETCH) {
+                rows.x0 = x0;
+                rows.count = count[0] - x0 < STRETCH ? count[0] - x0 : STRETCH;
+                memset(rows.codes, 0, sizeof rows.codes);
+                for (int32_t n = 0; n < BOUND_BRICK * BOUND_BRICK; n++) {
+                    const int32_t y = BOUND_BRICK * j + n % BOUND_BRICK, z = BOUND_BRICK * l + n / BOUND_BRICK;
+                    if (y < count[1] && z < count[2])
+                        cell_row(v, code, y, z, x0, rows.count, rows.codes[n]);
+                }
+                store_bricks(b, &rows, j, l, codes);
+                store_blocks(b, &rows, j, l, codes);
+            }
+}
+
+/* ---- windows ---- */
 
 void bounds_halve(const kernel_bounds *b, int32_t k, int32_t l0, int32_t l1, uint16_t *codes)
 {
@@ -169,4 +239,19 @@ void bounds_widen_rows(const kernel_bounds *b, int32_t k, int32_t j0, int32_t j1
         for (int32_t j = j0; j < j1; j++)
             for (int32_t z = l + 1; z < l + 4 && z < count[2]; z++)
                 raise_codes(grid_row(b, k, l, j, codes), grid_row(b, k, z, j, codes), count[0]);
+}
+
+void bounds_fill_near(const kernel_bounds *b, int32_t l0, int32_t l1, const uint16_t *codes, uint16_t *near)
+{
+    const int32_t *count = b->count[1];
+    for (int32_t l = l0; l < l1; l++)
+        for (int32_t j = 0; j < count[1]; j++) {
+            uint16_t *row = near + ((int64_t)l * count[1] + j) * count[0];
+            memset(row, 0, (size_t)count[0] * sizeof *row);
+            for (int32_t z = l; z < l + 3 && z < count[2]; z++)
+                for (int32_t y = j; y < j + 3 && y < count[1]; y++)
+                    raise_codes(row, codes + b->offset[1] + ((int64_t)z * count[1] + y) * count[0], count[0]);
+            for (int32_t reach = 0; reach < 2; reach++)
+                raise_codes(row, row + 1, count[0] - 1);
+        }
 }

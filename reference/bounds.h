@@ -41,20 +41,33 @@ HOST_AND_KERNEL void bounds_voxels(int32_t i, int32_t edge_vox, int32_t dim_vox,
         *lo = dim_vox - 1;
 }
 
-/* Fills b->levels, count and offset for a volume. Returns how many codes the grids have in all; 0 where they have too
- * many cells to be numbered in 32 bits. */
-size_t bounds_shape(const int32_t dims_vox[3], kernel_bounds *b);
+/* Bricks of cells along an axis of that many cells. */
+HOST_AND_KERNEL int32_t bounds_bricks(int32_t cells)
+{
+    return (cells + BOUND_BRICK - 1) / BOUND_BRICK;
+}
+
+/* Fills b->levels, count and offset for a volume, whose cells lie in bricks or row by row. Returns how many codes the
+ * grids have in all; 0 where they have too many cells to be numbered in 32 bits. */
+size_t bounds_shape(const int32_t dims_vox[3], bool bricks, kernel_bounds *b);
 
 /* The greatest codes of the blocks of layers [l0, l1), of edge_vox cells a side. */
 void bounds_fill(const reference_volume *v, const bounds_code *code, int32_t edge_vox, int32_t l0, int32_t l1,
                  uint16_t *codes);
 
-/* Layers [l0, l1) of grid k, made of the grid below: for k = 1 of cells, else of blocks that are not yet widened. */
+/* Layers [r0, r1) of bricks of grid 0, and what lies there of the blocks of grid 1, of two cells a side. */
+void bounds_fill_cells(const reference_volume *v, const bounds_code *code, const kernel_bounds *b, int32_t r0,
+                       int32_t r1, uint16_t *codes);
+
+/* Layers [l0, l1) of grid k from 2 on, made of the blocks of the grid below, which are not yet widened. */
 void bounds_halve(const kernel_bounds *b, int32_t k, int32_t l0, int32_t l1, uint16_t *codes);
 
 /* Makes windows of grid k's blocks: first along x and y, of the layers [l0, l1); then along z, of the rows [j0, j1). */
 void bounds_widen_layers(const kernel_bounds *b, int32_t k, int32_t l0, int32_t l1, uint16_t *codes);
 void bounds_widen_rows(const kernel_bounds *b, int32_t k, int32_t j0, int32_t j1, uint16_t *codes);
+
+/* Layers [l0, l1) of kernel_bounds' `near`, made of grid 1's blocks, which are not yet widened. */
+void bounds_fill_near(const kernel_bounds *b, int32_t l0, int32_t l1, const uint16_t *codes, uint16_t *near);
 
 #ifdef __cplusplus
 }

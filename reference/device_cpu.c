@@ -77,11 +77,25 @@ static void fill_blocks(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *sa
     bounds_fill(&s->volume, &s->code, job->grid, l0, l1, job->output);
 }
 
+static void fill_cells(const cpu_job *job, int32_t r0, int32_t r1, uint64_t *samples)
+{
+    const cpu_state *s = job->input;
+    (void)samples;
+    bounds_fill_cells(&s->volume, &s->code, &s->bounds, r0, r1, job->output);
+}
+
 static void halve_grid(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *samples)
 {
     const cpu_state *s = job->input;
     (void)samples;
     bounds_halve(&s->bounds, job->grid, l0, l1, job->output);
+}
+
+static void fill_near(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *samples)
+{
+    const cpu_state *s = job->input;
+    (void)samples;
+    bounds_fill_near(&s->bounds, l0, l1, s->bounds.codes, job->output);
 }
 
 static void widen_layers(const cpu_job *job, int32_t l0, int32_t l1, uint64_t *samples)
@@ -212,20 +226,21 @@ static reference_status need_grids(cpu_state *s, kernel_frame *f, vodr_error *er
 {
     kernel_bounds *b = &s->bounds;
     if (!b->codes) {
-        size_t count = bounds_shape(s->volume.dims_vox, b);
-        uint16_t *codes = pages_alloc(count * sizeof *codes);
+        size_t count = bounds_shape(s->volume.dims_vox, true, b);
+        const size_t near = (size_t)b->count[1][0] * (size_t)b->count[1][1] * (size_t)b->count[1][2];
+        uint16_t *codes = pages_alloc((count + near) * sizeof *codes);
         if (!codes)
             return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the maxima of %zu cells", count);
-        run_grid(s, fill_blocks, 1, b->count[0][2], codes);
-        for (int32_t k = 1; k <= b->levels; k++) {
+        run_grid(s, fill_cells, 0, bounds_bricks(b->count[0][2]), codes);
+        b->codes = codes;
+        b->near = codes + count;
+        run_grid(s, fill_near, 1, b->count[1][2], codes + count);
+        for (int32_t k = 2; k <= b->levels; k++) {
             if (k < b->levels)
                 run_grid(s, halve_grid, k, b->count[k][2], codes);
-            if (k == 1)
-                continue;
             run_grid(s, widen_layers, k - 1, b->count[k - 1][2], codes);
             run_grid(s, widen_rows, k - 1, b->count[k - 1][1], codes);
         }
-        b->codes = codes;
     }
     f->bounds = *b;
     return REFERENCE_OK;

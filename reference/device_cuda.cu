@@ -367,7 +367,7 @@ static reference_status need_codes(cuda_state *s, kernel_mode mode, const kernel
     reference_status status = REFERENCE_OK;
     uint16_t *codes = NULL;
     if (mode == KERNEL_SEARCH && !s->bounds.codes) {
-        size_t count = bounds_shape(s->volume.dims_vox, &s->bounds);
+        size_t count = bounds_shape(s->volume.dims_vox, false, &s->bounds);
         status = make_codes(s, &spare, 0, count, &codes, stats, error);
         s->bounds.codes = codes;
     } else if (mode == KERNEL_LEAP && s->block_edge_vox != b->edge_vox) {

@@ -8,6 +8,7 @@
 #ifndef REFERENCE_KERNEL_SEARCH_H
 #define REFERENCE_KERNEL_SEARCH_H
 
+#include "bounds.h"
 #include "kernel_march.h"
 
 /* Samples of a run and how many runs there are, of rays that are not longer than all of them together; runs of longer
@@ -30,7 +31,7 @@ typedef struct search_chunk {
 } search_chunk;
 
 /* The window grid whose windows hold a box as long as the packet's in any run, and half that box. */
-KERNEL int32_t search_level(const kernel_bounds *b, const bundle *all, int32_t run, REAL half[3])
+KERNEL int32_t search_level(const kernel_bounds *b, const bundle *all, int32_t run, REAL half[3], bool *near)
 {
     REAL longest = 0;
     for (int a = 0; a < 3; a++) {
@@ -39,6 +40,7 @@ KERNEL int32_t search_level(const kernel_bounds *b, const bundle *all, int32_t r
         longest = 2 * half[a] > longest ? 2 * half[a] : longest;
     }
     int32_t level = 1;
+    *near = BRICKED && longest <= 4;
     while (level < b->levels - 1 && longest > (REAL)(3 << level))
         level++;
     return level;
@@ -54,9 +56,10 @@ KERNEL int32_t search_used(const search_state *s)
 KERNEL void search_keys(const kernel_bounds *b, const bundle *all, search_state *s)
 {
     REAL half[3];
-    const int32_t level = search_level(b, all, s->run, half);
+    bool near;
+    const int32_t level = search_level(b, all, s->run, half, &near);
     const int32_t *count = b->count[level];
-    const uint16_t *codes = b->codes + b->offset[level];
+    const uint16_t *codes = near ? b->near : b->codes + b->offset[level];
     const REAL scale = (REAL)1 / (REAL)(1 << level);
     UNROLLED
     for (int i = 0; i < (LANES > 1 ? search_used(s) : KEYS); i++) {
@@ -74,6 +77,25 @@ KERNEL void search_keys(const kernel_bounds *b, const bundle *all, search_state 
     }
 }
 
+/* Asks for the codes that search_look() of a run's first chunk will read: the bricks of the box around its rays. */
+KERNEL void search_ask(const kernel_bounds *b, const bundle *all, int32_t begin)
+{
+    int32_t lo[3], hi[3], bricks[3];
+    for (int a = 0; a < 3; a++) {
+        const REAL middle = all->middle[a] + ((REAL)begin + (REAL)(RUN - 1) / 2) * all->step[a];
+        const REAL step = all->step[a] < 0 ? -all->step[a] : all->step[a];
+        const REAL half = all->around[a] + step * ((REAL)(RUN - 1) / 2);
+        const REAL last = (REAL)(b->count[0][a] - 1), low = middle - half, high = middle + half;
+        bricks[a] = bounds_bricks(b->count[0][a]);
+        lo[a] = (int32_t)(low < 0 ? 0 : low < last ? low : last) / BOUND_BRICK;
+        hi[a] = (int32_t)(high < 0 ? 0 : high < last ? high : last) / BOUND_BRICK;
+    }
+    for (int32_t z = lo[2]; z <= hi[2]; z++)
+        for (int32_t y = lo[1]; y <= hi[1]; y++)
+            for (int32_t x = lo[0]; x <= hi[0]; x++)
+                ask_brick(b->codes + (((int64_t)z * bricks[1] + y) * bricks[0] + x) * BOUND_BRICK_CELLS);
+}
+
 /* The code of the cell at a place. */
 KERNEL whole search_cell(const kernel_frame *f, REAL shift, const real place[3])
 {
@@ -81,7 +103,12 @@ KERNEL whole search_cell(const kernel_frame *f, REAL shift, const real place[3])
     whole cell[3];
     for (int a = 0; a < 3; a++)
         cell[a] = truncate(shift == (REAL)0.5 ? place[a] : place[a] + ((REAL)0.5 - shift));
-    return fetch_word(f->bounds.codes, (cell[2] * (size[1] + 1) + cell[1]) * (size[0] + 1) + cell[0]);
+    if (!BRICKED)
+        return fetch_word(f->bounds.codes, (cell[2] * (size[1] + 1) + cell[1]) * (size[0] + 1) + cell[0]);
+    const int32_t across = bounds_bricks(size[0] + 1), down = bounds_bricks(size[1] + 1);
+    const whole brick = ((cell[2] >> 2) * down + (cell[1] >> 2)) * across + (cell[0] >> 2);
+    const whole inside = (cell[2] & 3) * 16 + (cell[1] & 3) * 4 + (cell[0] & 3);
+    return fetch_word(f->bounds.codes, brick * BOUND_BRICK_CELLS + inside);
 }
 
 /* Keys of the chunk's samples: what their cells can have. */
@@ -101,22 +128,47 @@ KERNEL void search_look(const kernel_frame *f, const packet *rays, kernel_filter
     }
 }
 
+/* The greatest key of each lane. */
+KERNEL whole search_top(const search_chunk *chunk)
+{
+    whole top = chunk->key[0];
+    UNROLLED
+    for (int k = 1; k < RUN; k++)
+        top = pick_whole(chunk->key[k] > top, chunk->key[k], top);
+    return top;
+}
+
+/* The places of the samples of such keys. */
+KERNEL void search_place(const packet *rays, const search_state *s, const search_chunk *chunk, whole top, real p[3])
+{
+    place_of(rays, to_real(chunk->begin + top % RUN - s->lag), p);
+}
+
+/* Asks for the voxels of the samples that will be the first to be taken of a chunk. */
+KERNEL void search_ask_voxels(const kernel_frame *f, const packet *rays, reference_voxel type, const search_state *s,
+                              const search_chunk *chunk)
+{
+    const whole top = search_top(chunk);
+    const mask on = s->live & (top >= 0) & unless(bound_value(&f->bounds, top / RUN) <= s->greatest);
+    real p[3];
+    if (!any_lane(on))
+        return;
+    search_place(rays, s, chunk, top, p);
+    ask_voxels(&f->volume, type, p, on);
+}
+
 /* Takes the samples of a chunk that can raise their rays, each ray's in the order of their keys. */
 KERNEL void search_take(const kernel_frame *f, const packet *rays, kernel_filter filter, reference_voxel type,
                         mask wants, search_chunk *chunk, search_state *s, packet_result *out)
 {
     for (;;) {
-        whole top = chunk->key[0];
-        UNROLLED
-        for (int k = 1; k < RUN; k++)
-            top = pick_whole(chunk->key[k] > top, chunk->key[k], top);
+        const whole top = search_top(chunk);
         const mask on = wants & (top >= 0) & unless(bound_value(&f->bounds, top / RUN) <= s->greatest);
         if (!any_lane(on))
             return;
-        const real n = to_real(chunk->begin + top % RUN - s->lag);
         real p[3];
-        place_of(rays, n, p);
-        for (int a = 0; LANES > 1 && a < 3; a++) /* off the volume's sides, where sampling is slower */
+        search_place(rays, s, chunk, top, p);
+        for (int a = 0; a < 3 && LANES > 1; a++) /* off the volume's sides, where sampling is slower */
             p[a] = pick(on, p[a], spread(1));
         const real value = sample(&f->volume, type, filter, p);
         s->greatest = pick(on, larger(value, s->greatest), s->greatest);
@@ -143,22 +195,29 @@ KERNEL int32_t search_next(search_state *s)
 }
 
 /* Runs in the order of their keys, until no lane can gain by what is left. The next run is looked at before the samples
- * of one are taken, so that its reads are under way. */
+ * of one are taken, so that its reads are under way; what the one after it will be looked at with is asked for. */
 KERNEL void search_runs(const kernel_frame *f, const packet *rays, kernel_filter filter, reference_voxel type,
-                        search_state *s, packet_result *out)
+                        const bundle *all, search_state *s, packet_result *out)
 {
     search_chunk chunk, ahead;
-    int32_t top = search_next(s);
+    int32_t top = search_next(s), after = search_next(s);
     if (top >= 0)
         search_look(f, rays, filter, s, top % RUNS * s->run, &ahead);
+    if (BRICKED && after >= 0)
+        search_ask(&f->bounds, all, after % RUNS * s->run);
     while (top >= 0) {
         const mask wants = s->live & unless(bound_value(&f->bounds, spread_whole(top / RUNS)) <= s->greatest);
         if (!together_any(wants))
             return;
         chunk = ahead;
-        top = search_next(s);
-        if (top >= 0)
+        top = after;
+        after = search_next(s);
+        if (BRICKED && after >= 0)
+            search_ask(&f->bounds, all, after % RUNS * s->run);
+        if (top >= 0) {
             search_look(f, rays, filter, s, top % RUNS * s->run, &ahead);
+            search_ask_voxels(f, rays, type, s, &ahead);
+        }
         const int32_t end = chunk.begin + s->run;
         search_take(f, rays, filter, type, wants, &chunk, s, out);
         for (int32_t begin = chunk.begin + RUN; begin < end; begin += RUN) {
@@ -184,7 +243,7 @@ KERNEL packet_result search(const kernel_frame *f, const lookup *entries, const 
         s.run *= 2;
     s.runs = (all.most + s.run - 1) / s.run;
     search_keys(&f->bounds, &all, &s);
-    search_runs(f, rays, filter, type, &s, &out);
+    search_runs(f, rays, filter, type, &all, &s, &out);
     march_greatest(f, entries, s.greatest, &out);
     return out;
 }

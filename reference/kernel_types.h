@@ -61,11 +61,13 @@ typedef struct kernel_blocks {
 } kernel_blocks;
 
 /* What samples can be at most, as codes that rise with it: grid 0 has the code of each cell; entry (i, j, l) of grid k
- * that of a window of four times 2^k cells a side, which begins at cell (i, j, l)*2^k. The last grid has one entry. */
-enum { BOUND_GRIDS = 17 };
+ * that of a window of four times 2^k cells a side, which begins at cell (i, j, l)*2^k. The last grid has one entry. On
+ * the CPU grid 0 lies in bricks of BOUND_BRICK^3 cells, so that few lines of a cache hold what a run of rays meets. */
+enum { BOUND_GRIDS = 17, BOUND_BRICK = 4, BOUND_BRICK_CELLS = BOUND_BRICK * BOUND_BRICK * BOUND_BRICK };
 
 typedef struct kernel_bounds {
     const uint16_t *codes;
+    const uint16_t *near; /* as grid 1, of windows of six cells a side; where cells lie in bricks */
     int32_t levels, count[BOUND_GRIDS][3];
     int64_t offset[BOUND_GRIDS]; /* of a grid in codes */
     float scale, offset_value;   /* a code stands for code*scale + offset_value */

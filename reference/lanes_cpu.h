@@ -20,7 +20,14 @@ typedef REAL real __attribute__((vector_size(64)));
 typedef WHOLE_OF(REAL) whole __attribute__((vector_size(64)));
 typedef whole mask;
 
-enum { LANES = sizeof(real) / sizeof(REAL), TOGETHER = LANES, MAX_BATCH = 1, SEARCH_RUN = 4, SEARCH_RUNS = 256 };
+enum {
+    LANES = sizeof(real) / sizeof(REAL),
+    TOGETHER = LANES,
+    MAX_BATCH = 1,
+    SEARCH_RUN = 4,
+    SEARCH_RUNS = 256,
+    BRICKED = 1
+};
 
 KERNEL real spread(REAL x)
 {
@@ -94,6 +101,19 @@ KERNEL bool any_lane(mask m)
     for (int i = 0; i < 8; i++)
         all |= word[i];
     return all != 0;
+#endif
+}
+
+/* A bit a lane. */
+KERNEL uint32_t lanes_of(mask m)
+{
+#if defined(__AVX512F__) && defined(LANES_OF_FLOAT)
+    return _mm512_test_epi32_mask((__m512i)m, (__m512i)m);
+#else
+    uint32_t bits = 0;
+    for (int l = 0; l < LANES; l++)
+        bits |= (uint32_t)(m[l] != 0) << l;
+    return bits;
 #endif
 }
 
@@ -185,6 +205,34 @@ KERNEL real fetch(const kernel_volume *v, reference_voxel type, whole index)
             value[l] = ((const float *)v->voxels)[index[l]];
     }
     return value;
+}
+
+/* Asks for a brick of codes (kernel_bounds). */
+KERNEL void ask_brick(const uint16_t *brick)
+{
+    __builtin_prefetch(brick);
+    __builtin_prefetch(brick + BOUND_BRICK_CELLS / 2);
+}
+
+/* Asks for the voxels around the places, of KERNEL_LINEAR, of the lanes `on`. */
+KERNEL void ask_voxels(const kernel_volume *v, reference_voxel type, const real place[3], mask on)
+{
+    const int64_t bytes = type == REFERENCE_UINT8 ? 1 : type == REFERENCE_UINT16 ? 2 : 4;
+    const int64_t row = bytes * v->dims_vox[0], layer = row * v->dims_vox[1];
+    whole low[3];
+    for (int a = 0; a < 3; a++) {
+        low[a] = truncate(place[a]) - 1;
+        low[a] = pick_whole(low[a] < 0, spread_whole(0), low[a]);
+    }
+    for (uint32_t lanes = lanes_of(on); lanes; lanes &= lanes - 1) {
+        const int l = __builtin_ctz(lanes);
+        const char *voxel = (const char *)v->voxels + (int64_t)low[2][l] * layer + (int64_t)low[1][l] * row +
+                            (int64_t)low[0][l] * bytes;
+        __builtin_prefetch(voxel);
+        __builtin_prefetch(voxel + row);
+        __builtin_prefetch(voxel + layer);
+        __builtin_prefetch(voxel + layer + row);
+    }
 }
 
 KERNEL whole fetch_byte(const uint8_t *bytes, whole index)

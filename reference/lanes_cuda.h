@@ -8,7 +8,7 @@ typedef REAL real;
 typedef int32_t whole;
 typedef bool mask;
 
-enum { LANES = 1, MAX_BATCH = 4, TOGETHER = 16, SEARCH_RUN = 4, SEARCH_RUNS = 128 };
+enum { LANES = 1, MAX_BATCH = 4, TOGETHER = 16, SEARCH_RUN = 4, SEARCH_RUNS = 128, BRICKED = 0 };
 
 KERNEL real spread(REAL x)
 {
@@ -64,6 +64,15 @@ KERNEL real saturate(real x)
 KERNEL whole pick_whole(mask m, whole a, whole b)
 {
     return m ? a : b;
+}
+
+/* A card has other rays to go on with while it waits. */
+KERNEL void ask_brick(const uint16_t *)
+{
+}
+
+KERNEL void ask_voxels(const kernel_volume *, reference_voxel, const real[3], mask)
+{
 }
 
 KERNEL bool any_lane(mask m)

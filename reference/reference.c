@@ -328,7 +328,7 @@ static kernel_mode mode_of(const reference *r, const reference_march_job *job, c
     if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_NONE)
         return KERNEL_MIP;
     if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_BEST &&
-        bounds_shape(r->volume.dims_vox, &bounds) > 0)
+        bounds_shape(r->volume.dims_vox, true, &bounds) > 0)
         return KERNEL_SEARCH;
     if (job->blend == REFERENCE_MIP)
         return part_is_whole(part, r->volume.dims_vox) ? KERNEL_LEAP : KERNEL_MIP;

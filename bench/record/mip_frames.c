@@ -3,8 +3,9 @@
  *
  *   mip_frames DEVICE matrix CASES
  *   mip_frames DEVICE table|figure NAME VOLUME.raw TYPE FROM TO SIDE_PX ROUNDS [THREADS]
- * DEVICE: cuda or cpu; TYPE: uint8 or int16; FROM, TO: WxHxD voxels, in the file and enlarged. A table is of blocks of
- * 2 voxels, a figure of all sizes to the volume's. Every picture is held against none's: exit 1 when one differs. */
+ * DEVICE: cuda, cpu, or plain: the CPU without vector instructions of its own and without packed cells. TYPE: uint8 or
+ * int16; FROM, TO: WxHxD voxels, in the file and enlarged. A table is of every --accel in blocks of 2 voxels, a figure
+ * of `seed` in all sizes to the volume's. Every picture is held against none's: exit 1 when one differs. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,29 +13,17 @@
 #include <time.h>
 
 #include "camera.h"
-#include "cases.h"
 #include "enlarge.h"
-#include "reference.h"
+#include "mip_case.h"
 #include "stopwatch.h"
 
-enum { COLUMNS = 256, MAX_ROUNDS = 99, MAX_ENTRIES = 8 };
-
-static const char *const accel_names[] = {"none", "block", "bisect", "seed", "best"};
+enum { MAX_ROUNDS = 99 };
 
 static bool say(reference_status status, const char *what, const vodr_error *error)
 {
     if (status != REFERENCE_OK)
         fprintf(stderr, "mip_frames: %s: %s\n", what, error->text);
     return status == REFERENCE_OK;
-}
-
-static void fill_ramp(double *rgba)
-{
-    for (int i = 0; i < COLUMNS; i++) {
-        for (int c = 0; c < 3; c++)
-            rgba[4 * i + c] = i / (COLUMNS - 1.0);
-        rgba[4 * i + 3] = 1;
-    }
 }
 
 static double cpu_now_s(void)
@@ -46,120 +35,28 @@ static double cpu_now_s(void)
 
 /* ---- matrix ---- */
 
-typedef struct tally {
-    uint64_t cases, frames, differ;
-    uint64_t samples[REFERENCE_ACCELS];
-} tally;
-
-static bool draw(reference *r, reference_march_job job, reference_accel accel, int32_t block_vox, double *rgba,
-                 reference_stats *stats)
-{
-    vodr_error error;
-    job.accel = accel;
-    job.block_vox = block_vox;
-    return say(reference_march(r, &job, rgba, stats, &error), accel_names[accel], &error);
-}
-
-/* The case's voxels as floats, some below zero; NULL when the host is out of memory. */
-static float *as_floats(test_case *c)
-{
-    const int32_t *dims = c->input.dims_vox;
-    size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
-    float *values = malloc(count * sizeof *values);
-    double scale = rng_real(&c->random, 1e-3, 10), offset = rng_real(&c->random, -1e5, 1e4);
-    for (size_t i = 0; values && i < count; i++) {
-        double stored = c->input.voxel_bytes == 1 ? ((uint8_t *)c->input.voxels)[i] : ((uint16_t *)c->input.voxels)[i];
-        values[i] = (float)(stored * scale + offset);
-    }
-    return values;
-}
-
-static reference_march_job random_job(test_case *c, const double *table)
-{
-    rng *r = &c->random;
-    double spacing[3], finest = fmin(c->geometry.spacing[0], fmin(c->geometry.spacing[1], c->geometry.spacing[2]));
-    for (int a = 0; a < 3; a++)
-        spacing[a] = c->geometry.spacing[a] / finest;
-    return (reference_march_job){.camera = rng_one_in(r, 2)
-                                               ? reference_camera_rays(&c->view, spacing, rng_real(r, 0.1, 2))
-                                               : reference_camera_slices(&c->view),
-                                 .blend = REFERENCE_MIP,
-                                 .numbers = rng_one_in(r, 3) ? REFERENCE_TEXTURE : REFERENCE_FLOAT,
-                                 .filter = rng_one_in(r, 5) ? REFERENCE_NEAREST : REFERENCE_LINEAR,
-                                 .termination = 2,
-                                 .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
-                                 .window_scale = 1 / (c->input.voxel_bytes == 1 ? 255.0 : 65535.0)};
-}
-
-/* Blocks of 2, of a few voxels, of as many as the volume has, and of more. */
-static bool hold_case(test_case *c, reference *r, const double *table, double *none, double *other, tally *t)
-{
-    const int32_t *dims = c->input.dims_vox;
-    const int32_t longest =
-        dims[0] > dims[1] ? (dims[0] > dims[2] ? dims[0] : dims[2]) : (dims[1] > dims[2] ? dims[1] : dims[2]);
-    const int32_t edges[] = {2, (int32_t)rng_int(&c->random, 3, 20), longest < 2 ? 2 : longest, longest + 100};
-    const reference_march_job job = random_job(c, table);
-    const size_t bytes = 4 * (size_t)c->view.width_px * (size_t)c->view.height_px * sizeof *none;
-    reference_stats stats;
-    if (!draw(r, job, REFERENCE_ACCEL_NONE, 2, none, &stats))
-        return false;
-    t->samples[0] += stats.samples;
-    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
-        for (int e = 0; e < (accel == REFERENCE_ACCEL_BEST ? 1 : 4); e++) {
-            if (!draw(r, job, (reference_accel)accel, edges[e], other, &stats))
-                return false;
-            t->frames++;
-            t->samples[accel] += e == 0 ? stats.samples : 0;
-            if (memcmp(none, other, bytes) != 0) {
-                t->differ++;
-                fprintf(stderr, "mip_frames: %s, blocks of %d: not the picture of none\n", accel_names[accel],
-                        edges[e]);
-                case_print(stderr, c, &c->machine);
-            }
-        }
-    return true;
-}
-
-static bool one_case(uint64_t seed, const reference_options *options, const double *table, tally *t)
-{
-    test_case c;
-    reference *r = NULL;
-    vodr_error error;
-    if (!case_make(seed, &c))
-        return false;
-    float *floats = rng_one_in(&c.random, 4) ? as_floats(&c) : NULL;
-    reference_volume v = {.type = floats                     ? REFERENCE_FLOAT32
-                                  : c.input.voxel_bytes == 1 ? REFERENCE_UINT8
-                                                             : REFERENCE_UINT16,
-                          .voxels = floats ? floats : c.input.voxels};
-    memcpy(v.dims_vox, c.input.dims_vox, sizeof v.dims_vox);
-    size_t channels = 4 * (size_t)c.view.width_px * (size_t)c.view.height_px;
-    double *none = malloc(channels * sizeof *none), *other = malloc(channels * sizeof *other);
-    bool good = none && other && say(reference_open(options, &v, &r, &error), "open", &error) &&
-                hold_case(&c, r, table, none, other, t);
-    t->cases++;
-    reference_close(r);
-    free(none);
-    free(other);
-    free(floats);
-    case_free(&c);
-    return good;
-}
-
+/* The sums of the cases' maxima follow the totals: on another device they are the same but for what sums round. */
 static int matrix(const reference_options *options, int cases)
 {
-    static double table[4 * COLUMNS];
-    tally t = {0};
+    mip_tally t = {0};
     bool good = true;
-    fill_ramp(table);
-    for (int i = 0; good && i < cases; i++)
-        good = one_case((uint64_t)i + 1, options, table, &t);
+    double *sums = malloc(((size_t)cases + 1) * sizeof *sums);
+    for (int i = 0; sums && good && i < cases; i++) {
+        mip_case c;
+        good = mip_case_make((uint64_t)i + 1, &c) && mip_case_hold(&c, options, stderr, &t);
+        sums[i] = t.sum;
+        mip_case_free(&c);
+    }
     printf("{\"result\": \"mip_matrix\", \"cases\": %llu, \"frames\": %llu, \"differ\": %llu",
            (unsigned long long)t.cases, (unsigned long long)t.frames, (unsigned long long)t.differ);
     for (int accel = 0; accel < REFERENCE_ACCELS; accel++)
-        printf(", \"%s_samples\": %llu", accel_names[accel], (unsigned long long)t.samples[accel]);
-    puts("}");
-    return good && t.differ == 0 ? 0 : 1;
+        printf(", \"%s_samples\": %llu", mip_accel_name((reference_accel)accel), (unsigned long long)t.samples[accel]);
+    printf(", \"sums\": [");
+    for (int i = 0; sums && i < (int)t.cases; i++)
+        printf("%s%.9g", i ? ", " : "", sums[i]);
+    puts("]}");
+    free(sums);
+    return sums && good && t.differ == 0 ? 0 : 1;
 }
 
 /* ---- the paper's figures ---- */
@@ -204,6 +101,15 @@ static uint16_t *read_enlarged(const request *q)
     return NULL;
 }
 
+static bool draw(reference *r, reference_march_job job, reference_accel accel, int32_t block_vox, double *rgba,
+                 reference_stats *stats)
+{
+    vodr_error error;
+    job.accel = accel;
+    job.block_vox = block_vox;
+    return say(reference_march(r, &job, rgba, stats, &error), mip_accel_name(accel), &error);
+}
+
 static bool make_job(const request *q, int view, const double *table, reference_march_job *job)
 {
     static const double spacing[3] = {1, 1, 1};
@@ -227,7 +133,7 @@ static bool make_job(const request *q, int view, const double *table, reference_
                                  .blend = REFERENCE_MIP,
                                  .filter = REFERENCE_LINEAR,
                                  .termination = 2,
-                                 .table = {.columns = COLUMNS, .rows = 1, .rgba = table},
+                                 .table = {.columns = MIP_COLUMNS, .rows = 1, .rgba = table},
                                  .window_scale = 1 / 65535.0};
     return true;
 }
@@ -238,6 +144,7 @@ typedef struct entry {
     int32_t block_vox;
     uint64_t samples;
     double ms[MAX_ROUNDS], cpu_ms[MAX_ROUNDS], preprocess_ms;
+    double first_cpu_ms; /* of the frame that warms up: with what is made once of the volume */
 } entry;
 
 static void print_entry(const request *q, const char *device, int view, entry *e)
@@ -246,12 +153,15 @@ static void print_entry(const request *q, const char *device, int view, entry *e
     const double ms = stopwatch_median(e->ms, rounds), cpu_ms = stopwatch_median(e->cpu_ms, rounds);
     printf("{\"result\": \"mip\", \"device\": \"%s\", \"volume\": \"%s\", \"size_vox\": \"%dx%dx%d\", \"size_px\": %d, "
            "\"view\": \"%s\", \"accel\": \"%s\", \"block_vox\": %d, \"ms\": %.4f, \"least_ms\": %.4f, \"most_ms\": "
-           "%.4f, \"cpu_ms\": %.4f, \"samples\": %llu, \"preprocess_ms\": %.3f}\n",
-           device, q->name, q->to[0], q->to[1], q->to[2], q->side_px, views[view].name, accel_names[e->accel],
-           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, (unsigned long long)e->samples, e->preprocess_ms);
+           "%.4f, \"cpu_ms\": %.4f, \"least_cpu_ms\": %.4f, \"first_cpu_ms\": %.4f, \"samples\": %llu, "
+           "\"preprocess_ms\": %.3f}\n",
+           device, q->name, q->to[0], q->to[1], q->to[2], q->side_px, views[view].name, mip_accel_name(e->accel),
+           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, e->cpu_ms[0], e->first_cpu_ms,
+           (unsigned long long)e->samples, e->preprocess_ms);
 }
 
-/* Draws the entries in turn, the first of which is none's, and holds all pictures against its. */
+/* Draws the entries in turn; the picture of `none`, of these or an earlier call, is what all others are held against.
+ */
 static bool time_entries(const request *q, reference *r, const reference_march_job *job, int view, entry *entries,
                          int count, double *pictures[2])
 {
@@ -262,16 +172,19 @@ static bool time_entries(const request *q, reference *r, const reference_march_j
             entry *e = &entries[i];
             reference_stats stats;
             double begin_s = cpu_now_s();
-            good = draw(r, *job, e->accel, e->block_vox, pictures[i > 0], &stats);
+            good = draw(r, *job, e->accel, e->block_vox, pictures[e->accel != REFERENCE_ACCEL_NONE], &stats);
             e->samples = stats.samples;
             e->preprocess_ms += stats.preprocess_ms;
-            if (round >= 0) {
+            const double cpu_ms = 1e3 * (cpu_now_s() - begin_s);
+            if (round < 0) {
+                e->first_cpu_ms = cpu_ms;
+            } else {
                 e->ms[round] = stats.draw_ms;
-                e->cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
+                e->cpu_ms[round] = cpu_ms;
             }
-            if (good && i > 0 && memcmp(pictures[0], pictures[1], bytes) != 0) {
+            if (good && e->accel != REFERENCE_ACCEL_NONE && memcmp(pictures[0], pictures[1], bytes) != 0) {
                 fprintf(stderr, "mip_frames: %s, view %s, %s: not the picture of none\n", q->name, views[view].name,
-                        accel_names[e->accel]);
+                        mip_accel_name(e->accel));
                 good = false;
             }
         }
@@ -283,22 +196,20 @@ static bool time_entries(const request *q, reference *r, const reference_march_j
 
 static bool draw_view(const request *q, reference *r, int view, double *pictures[2])
 {
-    static double table[4 * COLUMNS];
+    static double table[4 * MIP_COLUMNS];
     reference_march_job job;
-    fill_ramp(table);
+    mip_fill_ramp(table);
     if (!make_job(q, view, table, &job))
         return false;
+    entry entries[REFERENCE_ACCELS] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 2}};
     int32_t longest = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
     longest = longest > q->to[2] ? longest : q->to[2];
-    bool good = true;
-    for (int32_t edge = 2; good && edge <= (q->figure ? longest : 2); edge *= 2) {
-        entry entries[MAX_ENTRIES] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 0}};
-        int count = 1;
-        for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
-            entries[count++] = (entry){.accel = (reference_accel)accel, .block_vox = edge};
-        for (int i = 0; i < count; i++)
-            entries[i].block_vox = edge;
-        good = time_entries(q, r, &job, view, entries, count, pictures);
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+        entries[accel] = (entry){.accel = (reference_accel)accel, .block_vox = 2};
+    bool good = time_entries(q, r, &job, view, entries, q->figure ? 1 : REFERENCE_ACCELS, pictures);
+    for (int32_t edge = 2; good && q->figure && edge <= longest; edge *= 2) {
+        entry seed = {.accel = REFERENCE_ACCEL_SEED, .block_vox = edge};
+        good = time_entries(q, r, &job, view, &seed, 1, pictures);
     }
     return good;
 }
@@ -329,7 +240,9 @@ static bool read_size(const char *text, int32_t size[3])
 
 int main(int argc, char **argv)
 {
-    reference_options options = {.device = argc > 1 && strcmp(argv[1], "cuda") == 0 ? REFERENCE_CUDA : REFERENCE_CPU};
+    reference_options options = {.device = argc > 1 && strcmp(argv[1], "cuda") == 0 ? REFERENCE_CUDA : REFERENCE_CPU,
+                                 .simd =
+                                     argc > 1 && strcmp(argv[1], "plain") == 0 ? VODR_SIMD_PORTABLE : VODR_SIMD_BEST};
     if (argc == 4 && strcmp(argv[2], "matrix") == 0)
         return matrix(&options, atoi(argv[3]));
     if (argc == 10 || argc == 11) {
@@ -344,7 +257,8 @@ int main(int argc, char **argv)
             q.rounds > 0 && q.rounds <= MAX_ROUNDS)
             return figures(&options, &q);
     }
-    fputs("usage: mip_frames cuda|cpu matrix CASES | table|figure NAME VOLUME.raw uint8|int16 FROM TO SIDE_PX ROUNDS "
+    fputs("usage: mip_frames cuda|cpu|plain matrix CASES | table|figure NAME VOLUME.raw uint8|int16 FROM TO SIDE_PX "
+          "ROUNDS "
           "[THREADS]\n",
           stderr);
     return 2;
