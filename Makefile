@@ -201,8 +201,8 @@ $(BUILD)/libvodr.a: $(CMODEL)
 
 $(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
 ifeq ($(shell uname -m),x86_64)
-$(BUILD)/reference/cpu_avx2.o: CFLAGS += -mavx2
-$(BUILD)/reference/cpu_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
+$(BUILD)/reference/cpu_avx2.o $(BUILD)/reference/cpu_cubic_avx2.o: CFLAGS += -mavx2
+$(BUILD)/reference/cpu_avx512.o $(BUILD)/reference/cpu_cubic_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
 endif
 
 $(BUILD)/%.o: %.cu | $(GEN)
@@ -261,8 +261,10 @@ $(BUILD)/bench/record/%.o: INCLUDES += -Itests/lib -Ibench/lib
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES)
 
+$(BUILD)/tests/test_reference_cubic: $(BUILD)/bench/record/cubic_cases.o
+
 $(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
-	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs
 .DELETE_ON_ERROR:

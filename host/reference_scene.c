@@ -80,6 +80,13 @@ static reference_camera camera_of(const scene *s, const reference_choice *c)
     return slices;
 }
 
+reference_filter reference_scene_filter(const scene *s, const reference_choice *c)
+{
+    if (reference_is_cubic(c->filter))
+        return c->filter;
+    return s->machine.filter == VODR_FILTER_NEAREST ? REFERENCE_NEAREST : REFERENCE_LINEAR;
+}
+
 static host_status fill_job(reference_scene *r, const scene *s, const reference_choice *c, const stored *v,
                             host_error *error)
 {
@@ -96,7 +103,7 @@ static host_status fill_job(reference_scene *r, const scene *s, const reference_
         .camera = camera_of(s, c),
         .numbers = c->numbers,
         .blend = mip ? REFERENCE_MIP : REFERENCE_OVER,
-        .filter = s->machine.filter == VODR_FILTER_NEAREST ? REFERENCE_NEAREST : REFERENCE_LINEAR,
+        .filter = reference_scene_filter(s, c),
         .shading = c->shading,
         .accel = c->accel,
         .block_vox = c->block_vox,

@@ -76,7 +76,7 @@ KERNEL void leap_sample(const kernel_frame *f, const packet *rays, kernel_filter
     real p[3];
     for (int a = 0; a < 3; a++)
         p[a] = rays->start[a] + to_real(n) * rays->step[a];
-    real value = sample(&f->volume, type, filter, p);
+    real value = sample_on(&f->volume, type, filter, p, on);
     *greatest = pick(on, larger(value, *greatest), *greatest);
     out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
 }

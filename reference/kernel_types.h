@@ -10,6 +10,7 @@ typedef enum kernel_filter {
     KERNEL_LINEAR,  /* from the voxels as they are */
     KERNEL_CELLS,   /* the same filter, from packed cells */
     KERNEL_TEXTURE, /* weights of 8 fraction bits */
+    KERNEL_CUBIC,   /* of 64 voxels: kernel_cubic.h */
     KERNEL_FILTERS,
 } kernel_filter;
 
@@ -23,8 +24,9 @@ typedef enum kernel_mode {
     KERNEL_MODES
 } kernel_mode;
 
-/* Whether blocks with nothing to show are passed over, in KERNEL_OVER and KERNEL_LIT. */
-typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIPS } kernel_skip;
+/* Whether blocks with nothing to show are passed over, in KERNEL_OVER and KERNEL_LIT; with KERNEL_SKIP_CELLS, of
+ * KERNEL_CUBIC, cells too. */
+typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIP_CELLS, KERNEL_SKIPS } kernel_skip;
 
 /* One pixel's ray, clipped to the volume: sample n of `count` lies at start + n*step, in voxels. */
 typedef struct kernel_ray {
@@ -41,6 +43,7 @@ typedef struct kernel_volume {
     const void *voxels;
     const void *cells;          /* the voxels around each cell, together: as lanes_*.h of the device reads them */
     unsigned long long texture; /* CUDA: the same voxels as a texture object; normalised where they are integers */
+    bool spline;                /* KERNEL_CUBIC: voxels are coefficients of B-splines, not values of cardinal ones */
 } kernel_volume;
 
 /* Blocks of `edge` cells. distance[b]: 0, the block is to be sampled; D, no block closer than D, diagonals counting 1,
@@ -51,6 +54,15 @@ typedef struct kernel_blocks {
     const uint16_t *most;    /* KERNEL_LEAP: a code of the greatest value that a sample in the block can have */
     bool bisects, seeds;     /* KERNEL_LEAP: blocks are left by bisection; the middle sample comes first */
 } kernel_blocks;
+
+/* What samples of KERNEL_CUBIC can be in each cell, as codes of 8 bits: the least below, the greatest above.
+ * shows[code]: whether the cell is to be sampled. */
+typedef struct kernel_cells {
+    const uint16_t *codes;
+    const uint8_t *shows;
+} kernel_cells;
+
+enum { CELL_CODES = 1 << 16 };
 
 /* What samples can be at most, as codes that rise with it: grid 0 has the code of each cell; entry (i, j, l) of grid k
  * that of a window of four times 2^k cells a side, which begins at cell (i, j, l)*2^k. The last grid has one entry. */
@@ -77,6 +89,7 @@ typedef struct kernel_frame {
     reference_camera camera;
     kernel_volume volume;
     kernel_blocks blocks;
+    kernel_cells cells;   /* KERNEL_SKIP_CELLS */
     kernel_bounds bounds; /* KERNEL_SEARCH; of KERNEL_LEAP only what a code stands for */
     kernel_table table;
     kernel_filter filter;

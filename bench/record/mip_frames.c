@@ -48,7 +48,7 @@ static double cpu_now_s(void)
 
 typedef struct tally {
     uint64_t cases, frames, differ;
-    uint64_t samples[REFERENCE_ACCELS];
+    uint64_t samples[REFERENCE_ACCEL_BEST + 1];
 } tally;
 
 static bool draw(reference *r, reference_march_job job, reference_accel accel, int32_t block_vox, double *rgba,
@@ -104,7 +104,7 @@ static bool hold_case(test_case *c, reference *r, const double *table, double *n
     if (!draw(r, job, REFERENCE_ACCEL_NONE, 2, none, &stats))
         return false;
     t->samples[0] += stats.samples;
-    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel <= REFERENCE_ACCEL_BEST; accel++)
         for (int e = 0; e < (accel == REFERENCE_ACCEL_BEST ? 1 : 4); e++) {
             if (!draw(r, job, (reference_accel)accel, edges[e], other, &stats))
                 return false;
@@ -156,7 +156,7 @@ static int matrix(const reference_options *options, int cases)
         good = one_case((uint64_t)i + 1, options, table, &t);
     printf("{\"result\": \"mip_matrix\", \"cases\": %llu, \"frames\": %llu, \"differ\": %llu",
            (unsigned long long)t.cases, (unsigned long long)t.frames, (unsigned long long)t.differ);
-    for (int accel = 0; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = 0; accel <= REFERENCE_ACCEL_BEST; accel++)
         printf(", \"%s_samples\": %llu", accel_names[accel], (unsigned long long)t.samples[accel]);
     puts("}");
     return good && t.differ == 0 ? 0 : 1;
@@ -294,7 +294,7 @@ static bool draw_view(const request *q, reference *r, int view, double *pictures
     for (int32_t edge = 2; good && edge <= (q->figure ? longest : 2); edge *= 2) {
         entry entries[MAX_ENTRIES] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 0}};
         int count = 1;
-        for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+        for (int accel = REFERENCE_ACCEL_BLOCK; accel <= REFERENCE_ACCEL_BEST; accel++)
             entries[count++] = (entry){.accel = (reference_accel)accel, .block_vox = edge};
         for (int i = 0; i < count; i++)
             entries[i].block_vox = edge;
