@@ -46,6 +46,9 @@ RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_
 # The same of bench/mip_frames.
 MIP      := bench/record/mip_frames bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
             tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
+# The same of bench/cubic_frames.
+CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch \
+            host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
 SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 
@@ -236,6 +239,9 @@ $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BU
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
 $(BUILD)/bench/mip_frames: $(MIP:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/cubic_frames: $(CUBIC:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
 $(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a

@@ -50,31 +50,44 @@ KERNEL void cubic_weights(bool spline, real t, real weight[4])
     }
 }
 
-/* The values at places. On a card the loop over layers stays one, for want of registers. */
-APART void cubic_values(const kernel_volume *v, reference_voxel type, const real place[3], real *value)
+/* The sum of 64 voxels of one type. On a card the loop over layers stays one, for want of registers. */
+KERNEL real cubic_sum(const kernel_volume *v, reference_voxel type, const whole offset[3][4], const real weight[3][4])
 {
-    const int32_t stride[3] = {1, v->dims_vox[0], v->dims_vox[0] * v->dims_vox[1]};
-    whole offset[3][4];
-    real weight[3][4], sum = spread(0);
-    for (int a = 0; a < 3; a++) {
-        const whole cell = truncate(place[a]);
-        cubic_weights(v->spline, place[a] - to_real(cell), weight[a]);
-        for (int n = 0; n < 4; n++)
-            offset[a][n] = clamp_whole(cell + (n - 2), 0, v->dims_vox[a] - 1) * stride[a];
-    }
+    real sum = spread(0);
     ROLLED
     for (int z = 0; z < 4; z++) {
         real layer = spread(0);
+        UNROLLED
         for (int y = 0; y < 4; y++) {
             const whole row = offset[2][z] + offset[1][y];
             real line = spread(0);
+            UNROLLED
             for (int x = 0; x < 4; x++)
                 line = line + weight[0][x] * fetch(v, type, row + offset[0][x]);
             layer = layer + weight[1][y] * line;
         }
         sum = sum + weight[2][z] * layer;
     }
-    *value = sum;
+    return sum;
+}
+
+/* The values at places. */
+APART void cubic_values(const kernel_volume *v, reference_voxel type, const real place[3], real *value)
+{
+    const int32_t stride[3] = {1, v->dims_vox[0], v->dims_vox[0] * v->dims_vox[1]};
+    whole offset[3][4];
+    real weight[3][4];
+    for (int a = 0; a < 3; a++) {
+        const whole cell = truncate(place[a]);
+        cubic_weights(v->spline, place[a] - to_real(cell), weight[a]);
+        for (int n = 0; n < 4; n++)
+            offset[a][n] = clamp_whole(cell + (n - 2), 0, v->dims_vox[a] - 1) * stride[a];
+    }
+    switch (type) {
+    case REFERENCE_UINT8: *value = cubic_sum(v, REFERENCE_UINT8, offset, weight); break;
+    case REFERENCE_UINT16: *value = cubic_sum(v, REFERENCE_UINT16, offset, weight); break;
+    default: *value = cubic_sum(v, REFERENCE_FLOAT32, offset, weight);
+    }
 }
 
 KERNEL real sample_cubic(const kernel_volume *v, reference_voxel type, const real place[3], mask on)

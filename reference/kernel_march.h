@@ -81,8 +81,8 @@ KERNEL void march_ask(const kernel_frame *f, const packet *rays, const bundle *a
     fetch_ahead(&f->volume, type, place);
 }
 
-/* Takes the samples n to n + batch - 1 of the live lanes; without `all`, only those before `end`; with
- * KERNEL_SKIP_CELLS, only those whose cells may show something. The volume is read for all of them before the first is
+/* Takes the samples n to n + batch - 1 of the live lanes; without `all`, only those before `end`; of KERNEL_CUBIC, only
+ * those that may show something. The volume is read for all of them before the first is
  * used, so that a card has several reads under way. With `ends`, opaque rays end. */
 KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
                         kernel_mode mode, kernel_filter filter, kernel_skip skip, reference_voxel type, int batch,
@@ -90,7 +90,7 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
 {
     real p[MAX_BATCH][3], value[MAX_BATCH];
     mask shows[MAX_BATCH];
-    const bool by_cells = filter == KERNEL_CUBIC && skip == KERNEL_SKIP_CELLS;
+    const bool looks = filter == KERNEL_CUBIC && (skip == KERNEL_SKIP_CELLS || (LANES > 1 && skip != KERNEL_SKIP_NONE));
     const real last = to_real(LANES > 1 ? rays->count - 1 : spread_whole(s->end - 1));
     for (int k = 0; k < batch; k++) {
         real at = spread((REAL)s->n + (REAL)k);
@@ -99,8 +99,8 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
         for (int a = 0; a < 3; a++)
             p[k][a] = rays->start[a] + at * rays->step[a];
         shows[k] = s->live;
-        if (by_cells) {
-            shows[k] = shows[k] & cubic_shows(f, p[k]);
+        if (looks) {
+            shows[k] = shows[k] & place_shows(f, skip, p[k]);
             if (!any_lane(shows[k]))
                 continue;
         }
@@ -108,7 +108,7 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
     }
     for (int k = 0; k < batch; k++) {
         mask on = all ? shows[k] : shows[k] & (s->n + k < s->end);
-        if (by_cells && !any_lane(on))
+        if (looks && !any_lane(on))
             continue;
         out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
         if (mode == KERNEL_MIP) {
@@ -181,7 +181,7 @@ KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const p
     progress s = {0, skip == KERNEL_SKIP_NONE ? all.most : 0, 0, spread(MARCH_LOWEST), 0 < rays->count};
     while (any_lane(s.live)) {
         if (hops)
-            march_hop(f, &all, rays, &s);
+            march_hop(f, &all, rays, filter == KERNEL_CUBIC ? 1 : HOP_RUN, &s);
         else if (skip != KERNEL_SKIP_NONE)
             march_skip(f, &lane, rays, filter, &s);
         if (any_lane(s.live))

@@ -82,7 +82,7 @@ KERNEL real cubic_polynomial(const real power[4], float t)
     return ((power[0] * t + power[1]) * t + power[2]) * t + power[3];
 }
 
-KERNEL float cubic_sum(real x)
+KERNEL float cubic_total(real x)
 {
     const half_real eight = __builtin_shufflevector(x, x, 0, 1, 2, 3, 4, 5, 6, 7) +
                             __builtin_shufflevector(x, x, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -99,7 +99,7 @@ KERNEL float cubic_value(bool spline, const real layer[4], const float t[3])
     const quarter_real z = ((p[0] * t[2] + p[1]) * t[2] + p[2]) * t[2] + p[3];
     const real across = cubic_polynomial(cubic_along_x[spline], t[0]) * cubic_polynomial(cubic_along_y[spline], t[1]);
     const real through = (layer[0] * z[0] + layer[1] * z[1]) + (layer[2] * z[2] + layer[3] * z[3]);
-    return cubic_sum(through * across);
+    return cubic_total(through * across);
 }
 
 /* Bit l: lane l. */
