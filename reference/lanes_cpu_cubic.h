@@ -35,6 +35,16 @@ static const real cubic_along_x[2][4] = {CUBIC_CARDINAL(CUBIC_ALONG_X), CUBIC_BS
 static const real cubic_along_y[2][4] = {CUBIC_CARDINAL(CUBIC_ALONG_Y), CUBIC_BSPLINE(CUBIC_ALONG_Y)};
 static const quarter_real cubic_along_z[2][4] = {CUBIC_CARDINAL(CUBIC_ALONG_Z), CUBIC_BSPLINE(CUBIC_ALONG_Z)};
 
+KERNEL whole cubic_widen(layer_shorts line)
+{
+    shorts layer;
+#if defined(__AVX512F__)
+    return (whole)_mm512_cvtepu16_epi32((__m256i)line);
+#endif
+    memcpy(&layer, &line, sizeof layer);
+    return __builtin_convertvector(layer, whole);
+}
+
 /* The layer of four rows of four voxels from number `first` on, `row` apart. */
 KERNEL real cubic_layer(const void *voxels, reference_voxel type, size_t first, size_t row)
 {
@@ -49,12 +59,9 @@ KERNEL real cubic_layer(const void *voxels, reference_voxel type, size_t first, 
     }
     if (type == REFERENCE_UINT16) {
         uint64_t line[4];
-        shorts layer;
         for (size_t y = 0; y < 4; y++)
             memcpy(&line[y], (const uint16_t *)voxels + first + y * row, sizeof line[y]);
-        const layer_shorts all = {line[0], line[1], line[2], line[3]};
-        memcpy(&layer, &all, sizeof layer);
-        return to_real(__builtin_convertvector(layer, whole));
+        return to_real(cubic_widen((layer_shorts){line[0], line[1], line[2], line[3]}));
     }
     four line[4];
     for (size_t y = 0; y < 4; y++)
@@ -62,8 +69,8 @@ KERNEL real cubic_layer(const void *voxels, reference_voxel type, size_t first, 
     return (real)join(line[0], line[1], line[2], line[3]);
 }
 
-/* The same of a cell at the volume's border. */
-KERNEL real cubic_border(const kernel_volume *v, reference_voxel type, const int32_t cell[3], int z)
+/* The four layers of a cell at the volume's border. */
+APART void cubic_border(const kernel_volume *v, const int32_t cell[3], real layer[4])
 {
     int32_t at[3][4];
     whole index;
@@ -72,9 +79,11 @@ KERNEL real cubic_border(const kernel_volume *v, reference_voxel type, const int
             const int32_t i = cell[a] + n - 2, last = v->dims_vox[a] - 1;
             at[a][n] = i < 0 ? 0 : i > last ? last : i;
         }
-    for (int n = 0; n < LANES; n++)
-        index[n] = (at[2][z] * v->dims_vox[1] + at[1][n / 4]) * v->dims_vox[0] + at[0][n % 4];
-    return fetch(v, type, index);
+    for (int z = 0; z < 4; z++) {
+        for (int n = 0; n < LANES; n++)
+            index[n] = (at[2][z] * v->dims_vox[1] + at[1][n / 4]) * v->dims_vox[0] + at[0][n % 4];
+        layer[z] = fetch(v, v->type, index);
+    }
 }
 
 KERNEL real cubic_polynomial(const real power[4], float t)
@@ -124,8 +133,8 @@ typedef struct cubic_places {
     uint32_t inside;
 } cubic_places;
 
-/* The values of the lanes that are bits of `on`. */
-APART void cubic_values(const kernel_volume *v, reference_voxel type, const cubic_places *p, uint32_t on,
+/* The values of the lanes that are bits of `on`; type and spline are constants. */
+KERNEL void cubic_lanes(const kernel_volume *v, reference_voxel type, bool spline, const cubic_places *p, uint32_t on,
                         float value[LANES])
 {
     const size_t row = (size_t)v->dims_vox[0], next = row * (size_t)v->dims_vox[1];
@@ -139,12 +148,24 @@ APART void cubic_values(const kernel_volume *v, reference_voxel type, const cubi
             for (size_t z = 0; z < 4; z++)
                 layer[z] = cubic_layer(v->voxels, type, first + z * next, row);
         } else {
-            ROLLED
-            for (int z = 0; z < 4; z++)
-                layer[z] = cubic_border(v, type, at, z);
+            cubic_border(v, at, layer);
         }
-        value[l] = cubic_value(v->spline, layer, t);
+        value[l] = cubic_value(spline, layer, t);
     }
+}
+
+/* The same. Coefficients of B-splines are floats. */
+APART void cubic_values(const kernel_volume *v, reference_voxel type, const cubic_places *p, uint32_t on,
+                        float value[LANES])
+{
+    if (v->spline)
+        cubic_lanes(v, REFERENCE_FLOAT32, true, p, on, value);
+    else if (type == REFERENCE_UINT8)
+        cubic_lanes(v, REFERENCE_UINT8, false, p, on, value);
+    else if (type == REFERENCE_UINT16)
+        cubic_lanes(v, REFERENCE_UINT16, false, p, on, value);
+    else
+        cubic_lanes(v, REFERENCE_FLOAT32, false, p, on, value);
 }
 
 KERNEL real sample_cubic(const kernel_volume *v, reference_voxel type, const real place[3], mask on)
