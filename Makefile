@@ -55,7 +55,7 @@ SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) .ci/run
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles bench bench-cosim bench-model bench-reference bench-cardinal bench-sweep cosim-long vectors findings contact-sheet crosscheck fuzz lint format docs synth clean
 
 all: $(BUILD)/vodr ## build build/vodr
 
@@ -128,6 +128,11 @@ bench-reference: ## measure the reference renderer on the CPU beside VTK, and wr
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/reference_frames
 	@scripts/tables $(BUILD) reference
 	@cat $(BUILD)/tables/reference
+
+bench-cardinal: ## measure the cubic filters on the CPU, and teem's, and write docs/table-cardinal.md again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/cubic_frames $(BUILD)/bench/teem_frames
+	@scripts/tables $(BUILD) cardinal
+	@cat $(BUILD)/tables/cardinal
 
 bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
 	@scripts/tables $(BUILD) sweep
@@ -242,6 +247,9 @@ $(BUILD)/bench/mip_frames: $(MIP:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
 $(BUILD)/bench/cubic_frames: $(CUBIC:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/teem_frames: $(BUILD)/bench/record/teem_frames.o $(BUILD)/bench/lib/stopwatch.o $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
 $(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a

@@ -201,8 +201,7 @@ reference_status blocks_classify_cells(hull_scale s, const reference_table *tabl
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a table of %d columns", table->columns);
     count_visible(table, visible);
     for (uint32_t code = 0; code < CELL_CODES; code++) {
-        double least, most;
-        hull_decode(s, code, &least, &most);
+        const double least = hull_least(s, code & 255), most = hull_greatest(s, code >> 8);
         const double p = (least * scale + offset) * last, q = (most * scale + offset) * last;
         shows[code] = !transparent(visible, table->columns, fmin(p, q), fmax(p, q));
     }

@@ -24,9 +24,12 @@ hull_scale hull_scale_of(bool spline, float least, float most)
     return (hull_scale){s.least, s.most, 255 / (s.most - s.least), margin};
 }
 
-void hull_decode(hull_scale s, uint32_t code, double *least, double *most)
+double hull_least(hull_scale s, uint32_t code)
 {
-    const double step = 1 / (double)s.inverse, slack = step / 1024;
-    *least = (double)s.least + step * (code & 255) - slack;
-    *most = (double)s.most - step * (255 - (code >> 8)) + slack;
+    return (double)s.least + (code - 1 / 1024.0) / (double)s.inverse;
+}
+
+double hull_greatest(hull_scale s, uint32_t code)
+{
+    return (double)s.most - (255 - 1 / 1024.0 - code) / (double)s.inverse;
 }

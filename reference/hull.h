@@ -50,8 +50,9 @@ HOST_AND_KERNEL uint16_t hull_code(hull_scale s, float least, float most)
     return (uint16_t)((below < 255 ? below : 255) | (255 - (above < 255 ? above : 255)) << 8);
 }
 
-/* What a code stands for, with a margin for how codes are rounded. */
-void hull_decode(hull_scale s, uint32_t code, double *least, double *most);
+/* What a cell's codes stand for, with a margin for how they are rounded. */
+double hull_least(hull_scale s, uint32_t code);
+double hull_greatest(hull_scale s, uint32_t code);
 
 /* ---- the CPU ---- */
 

@@ -29,6 +29,13 @@ KERNEL mask cubic_shows(const kernel_frame *f, const real place[3])
     return fetch_byte(f->cells.shows, fetch_word(f->cells.codes, cubic_cell(&f->volume, place))) != 0;
 }
 
+/* Whether samples at places may be greater than what there is. */
+KERNEL mask cubic_raises(const kernel_frame *f, const real place[3], real greatest)
+{
+    const whole code = fetch_word(f->cells.codes, cubic_cell(&f->volume, place)) >> 8;
+    return to_real(code) * (REAL)f->cells.step + (REAL)f->cells.base > greatest;
+}
+
 /* sample_cubic(): the value at places of the lanes `on`; what the others get means nothing. */
 #if defined(LANES_OF_FLOAT)
 #include "lanes_cpu_cubic.h"

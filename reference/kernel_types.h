@@ -56,10 +56,12 @@ typedef struct kernel_blocks {
 } kernel_blocks;
 
 /* What samples of KERNEL_CUBIC can be in each cell, as codes of 8 bits: the least below, the greatest above.
- * shows[code]: whether the cell is to be sampled. */
+ * KERNEL_SKIP_CELLS: shows[code] says whether the cell is to be sampled. KERNEL_LEAP: the greatest is at most code*step
+ * + base; with a step of 0 cells are not looked at. */
 typedef struct kernel_cells {
     const uint16_t *codes;
     const uint8_t *shows;
+    double step, base;
 } kernel_cells;
 
 enum { CELL_CODES = 1 << 16 };
@@ -89,7 +91,7 @@ typedef struct kernel_frame {
     reference_camera camera;
     kernel_volume volume;
     kernel_blocks blocks;
-    kernel_cells cells;   /* KERNEL_SKIP_CELLS */
+    kernel_cells cells;
     kernel_bounds bounds; /* KERNEL_SEARCH; of KERNEL_LEAP only what a code stands for */
     kernel_table table;
     kernel_filter filter;

@@ -55,7 +55,7 @@ KERNEL real cubic_layer(const void *voxels, reference_voxel type, size_t first, 
             memcpy(&line[y], (const uint8_t *)voxels + first + y * row, sizeof line[y]);
         const four all = {(int32_t)line[0], (int32_t)line[1], (int32_t)line[2], (int32_t)line[3]};
         memcpy(&layer, &all, sizeof layer);
-        return to_real(__builtin_convertvector(layer, whole));
+        return to_real(cubic_widen((layer_shorts) __builtin_convertvector(layer, shorts)));
     }
     if (type == REFERENCE_UINT16) {
         uint64_t line[4];

@@ -312,7 +312,7 @@ static blocks_kind kind_of(const reference *r, const reference_march_job *job)
         .bound = job->accel == REFERENCE_ACCEL_RIVAL    ? HULL_RIVAL
                  : job->accel == REFERENCE_ACCEL_UNSAFE ? HULL_UNSAFE
                                                         : HULL_BEZIER,
-        .cells = cubic && best && job->blend == REFERENCE_OVER && cells <= INT32_MAX,
+        .cells = cubic && best && cells <= INT32_MAX,
     };
 }
 
@@ -378,6 +378,10 @@ static reference_status classify_blocks(reference *r, const reference_march_job 
         blocks_encode(b, r->scale, r->shown, &f->bounds);
         f->blocks.most = r->shown;
         f->blocks.seeds = job->accel == REFERENCE_ACCEL_BEST;
+        if (k.cells && job->accel == REFERENCE_ACCEL_BEST) {
+            f->cells.step = 1 / (double)r->scale.inverse;
+            f->cells.base = hull_greatest(r->scale, 0);
+        }
         return REFERENCE_OK;
     }
     reference_status status = blocks_classify(b, &job->table, job->window_scale, job->window_offset,
