@@ -33,6 +33,8 @@ struct reference {
     blocks_kind kind; /* what they are of */
     hull_scale scale; /* of blocks of a cubic */
     void *shown;      /* owned; of the last frame: what shows of cells, or codes of blocks */
+    float largest;    /* magnitude of a float, once a cubic needs it */
+    bool has_largest;
     char name[DEVICE_NAME_CHARS];
 };
 
@@ -256,6 +258,23 @@ static reference_status check_march(const reference *r, const reference_march_jo
     return REFERENCE_OK;
 }
 
+/* Sums of 64 voxels, and bounds of them, must be finite: floats are looked through once. */
+static reference_status check_cubic(reference *r, vodr_error *error)
+{
+    static const float most = 1e36F;
+    const float *values = r->volume.voxels;
+    const int32_t *dims = r->volume.dims_vox;
+    const size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
+    for (size_t i = 0; r->volume.type == REFERENCE_FLOAT32 && !r->has_largest && i < count; i++)
+        r->largest = fmaxf(r->largest, fabsf(values[i]));
+    r->has_largest = true;
+    if (r->largest <= most)
+        return REFERENCE_OK;
+    return reference_fail(error, REFERENCE_INVALID,
+                          "the volume has a voxel of magnitude %g, must have at most %g for a cubic filter",
+                          (double)r->largest, (double)most);
+}
+
 /* The table in the numbers it is used in, with copies of its last entries behind (kernel_types.h). */
 static void *convert_table(const reference_march_job *job)
 {
@@ -470,6 +489,8 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
 {
     *stats = (reference_stats){0};
     reference_status status = check_march(r, job, error);
+    if (status == REFERENCE_OK && reference_is_cubic(job->filter))
+        status = check_cubic(r, error);
     if (status == REFERENCE_OK && has_blocks(job))
         status = need_blocks(r, job, stats, error);
     if (status != REFERENCE_OK)

@@ -353,6 +353,12 @@ static void test_refusals(void **state)
     bad.accel = REFERENCE_ACCEL_HULL;
     assert_int_equal(reference_march(r, &bad, rgba, &stats, &error), REFERENCE_INVALID);
     reference_close(r);
+    const float large = -2e36F;
+    const reference_volume huge = {{1, 1, 1}, REFERENCE_FLOAT32, &large};
+    assert_int_equal(reference_open(&options, &huge, &r, &error), REFERENCE_OK);
+    assert_int_equal(reference_march(r, &good, rgba, &stats, &error), REFERENCE_INVALID);
+    assert_non_null(strstr(error.text, "magnitude 2e+36"));
+    reference_close(r);
 }
 
 int main(int argc, char **argv)
