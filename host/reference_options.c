@@ -137,8 +137,8 @@ static const option rows[] = {
      "cubic filters, which have none and best beside"},
     {"filter", 0, "FILTER", false, set_filter,
      "nearest, linear, cardinal, bspline (linear)\n"
-     "cardinal and bspline weight 64 voxels: the cubics through\n"
-     "the voxels of Catmull and Rom and of B-splines"},
+     "cardinal and bspline weight 64 voxels, by Catmull and\n"
+     "Rom's cubics through them and by B-splines"},
     {"step", 0, "VOXELS", false, set_step, "raycast: finest voxels between samples, 0.01 to 1000 (1)"},
     {"block", 0, "N", false, set_block, "edge of the blocks of --accel in voxels, 2 to 32768 (8)"},
     {"shading", 0, "SHADING", false, set_shading, "none or phong; phong is light from the eye (none)"},
