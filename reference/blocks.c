@@ -90,12 +90,21 @@ static void count_visible(const reference_table *t, int32_t *visible)
     }
 }
 
-/* Whether all columns that values from least to most meet are transparent, with an entry's margin. */
+/* The columns that a value at a place in the table meets, with an entry's margin. */
+static int32_t first_column(double place, int32_t columns)
+{
+    return (int32_t)fmin(fmax(floor(place - 0.001), 0), columns - 1);
+}
+
+static int32_t last_column(double place, int32_t columns)
+{
+    return (int32_t)fmin(fmax(floor(place + 0.001) + 1, 0), columns - 1);
+}
+
+/* Whether all columns that values from least to most meet are transparent. */
 static bool transparent(const int32_t *visible, int32_t columns, double least, double most)
 {
-    int32_t first = (int32_t)fmin(fmax(floor(least - 0.001), 0), columns - 1);
-    int32_t last = (int32_t)fmin(fmax(floor(most + 0.001) + 1, 0), columns - 1);
-    return visible[last + 1] == visible[first];
+    return visible[last_column(most, columns) + 1] == visible[first_column(least, columns)];
 }
 
 /* Lowers own[] to one more than the least of beside[] at the same place and on both sides of it. */
@@ -196,15 +205,18 @@ reference_status blocks_classify_cells(hull_scale s, const reference_table *tabl
                                        uint8_t shows[CELL_CODES], vodr_error *error)
 {
     const double last = table->columns - 1;
+    int32_t below[256], above[256]; /* where what a code of the least, and of the greatest, shows begins or ends */
     int32_t *visible = malloc(((size_t)table->columns + 1) * sizeof *visible);
     if (!visible)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a table of %d columns", table->columns);
     count_visible(table, visible);
-    for (uint32_t code = 0; code < CELL_CODES; code++) {
-        const double least = hull_least(s, code & 255), most = hull_greatest(s, code >> 8);
-        const double p = (least * scale + offset) * last, q = (most * scale + offset) * last;
-        shows[code] = !transparent(visible, table->columns, fmin(p, q), fmax(p, q));
+    for (uint32_t i = 0; i < 256; i++) {
+        const double p = (hull_least(s, i) * scale + offset) * last, q = (hull_greatest(s, i) * scale + offset) * last;
+        below[i] = scale < 0 ? last_column(p, table->columns) + 1 : first_column(p, table->columns);
+        above[i] = scale < 0 ? first_column(q, table->columns) : last_column(q, table->columns) + 1;
     }
+    for (uint32_t code = 0; code < CELL_CODES; code++)
+        shows[code] = visible[below[code & 255]] != visible[above[code >> 8]];
     free(visible);
     return REFERENCE_OK;
 }

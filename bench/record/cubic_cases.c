@@ -80,6 +80,10 @@ static reference_march_job random_job(test_case *c, double scale, double offset,
     job.block_vox = (int32_t)(rng_one_in(r, 5) ? rng_int(r, 2, 200) : rng_int(r, 2, 9));
     if (!rng_one_in(r, 3))
         job.termination = rng_real(r, 0.3, 1);
+    if (rng_one_in(r, 5)) { /* a function that runs the other way */
+        job.window_scale = -job.window_scale;
+        job.window_offset = 1 - job.window_offset;
+    }
     if (by_gradient)
         job.table.gradient_most = rng_real(r, 0.05, 1);
     return job;
