@@ -55,13 +55,16 @@ RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_
 # The same of bench/mip_frames.
 MIP      := bench/record/mip_frames bench/record/mip_case bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
             tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
+# The same of bench/cubic_frames.
+CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch \
+            host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
-SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/mip bench/model bench/peers-lib bench/reference .ci/run
+SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/cardinal bench/mip bench/model bench/peers-lib bench/reference .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-mip bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-mip bench-cardinal bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
 
 all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -163,6 +166,11 @@ bench-mip: ## the paper on the maximum beside ours, VTK and teem (a quarter of a
 	@scripts/tables $(BUILD) mip
 	@cat $(BUILD)/tables/mip
 
+bench-cardinal: ## measure the cubic filters on the CPU, and teem's, and write docs/table-cardinal.md again
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/cubic_frames $(BUILD)/bench/teem_frames
+	@scripts/tables $(BUILD) cardinal
+	@cat $(BUILD)/tables/cardinal
+
 bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
 	@scripts/tables $(BUILD) sweep
 	@cat $(BUILD)/tables/sweep
@@ -247,8 +255,8 @@ $(BUILD)/libvodr.a: $(CMODEL)
 $(BUILD)/cmodel/%.o: override CFLAGS += $(COVER)
 $(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
 ifeq ($(shell uname -m),x86_64)
-$(BUILD)/reference/cpu_avx2.o: CFLAGS += -mavx2
-$(BUILD)/reference/cpu_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
+$(BUILD)/reference/cpu_avx2.o $(BUILD)/reference/cpu_cubic_avx2.o: CFLAGS += -mavx2
+$(BUILD)/reference/cpu_avx512.o $(BUILD)/reference/cpu_cubic_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
 endif
 
 $(BUILD)/%.o: %.cu | $(GEN)
@@ -291,6 +299,12 @@ $(BUILD)/bench/gpu_record: $(RECORD:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BU
 $(BUILD)/bench/mip_frames: $(MIP:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
+$(BUILD)/bench/cubic_frames: $(CUBIC:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/teem_frames: $(BUILD)/bench/record/teem_frames.o $(BUILD)/bench/lib/stopwatch.o $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
 $(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
 
@@ -325,8 +339,10 @@ $(BUILD)/tests/test_no_memory: private WRAPPED := $(addprefix -Wl$(comma)--wrap=
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) $(WRAPPED) -o $@ $^ -lcmocka $(LIBRARIES)
 
+$(BUILD)/tests/test_reference_cubic: $(BUILD)/bench/record/cubic_cases.o
+
 $(REFERENCE_TESTS): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TESTLIB) $(MIP_CASES) $(BUILD)/libhost.a $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
-	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBRARIES) $(CUDA_LIBRARIES)
 
 .SECONDARY: # keep the objects of programs
 .DELETE_ON_ERROR:

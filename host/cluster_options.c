@@ -123,6 +123,9 @@ host_status cluster_options_check(const reference_wish *wish, const view_options
     if (wish->choice.fixed)
         return host_fail(error, HOST_BAD_INPUT,
                          "--numbers fixed draws whole volumes: cluster has float, double and texture");
+    if (reference_is_cubic(wish->choice.filter))
+        return host_fail(error, HOST_BAD_INPUT,
+                         "--filter cardinal and bspline draw whole volumes: cluster has nearest and linear");
     host_status status = view_options_machine(v, &machine, error);
     if (status == HOST_OK && machine.blend == VODR_BLEND_MIP && accel != REFERENCE_ACCEL_NONE &&
         accel != REFERENCE_ACCEL_BEST)

@@ -98,16 +98,27 @@ static void print_option(const option *o)
     putchar('\n');
 }
 
+/* Whether a table before number `table` has an option of that name, and so takes it. */
+static bool is_taken(const command *c, int table, const char *name)
+{
+    for (int t = 0; t < table; t++)
+        for (size_t i = 0; i < c->tables[t]->count; i++)
+            if (strcmp(c->tables[t]->options[i].name, name) == 0)
+                return true;
+    return false;
+}
+
 static void print_help(const command *c)
 {
     printf("vodr %s - %s\n\nusage: vodr %s", c->name, c->summary, c->name);
     for (int i = 0; c->operands[i]; i++)
         printf(i < c->required ? " %s" : " [%s]", c->operands[i]);
     puts(c->more ? "... [OPTION]..." : " [OPTION]...");
-    for (const option_table *const *table = c->tables; *table; table++) {
-        printf("\n%s\n", (*table)->title);
-        for (size_t i = 0; i < (*table)->count; i++)
-            print_option(&(*table)->options[i]);
+    for (int t = 0; c->tables[t]; t++) {
+        printf("\n%s\n", c->tables[t]->title);
+        for (size_t i = 0; i < c->tables[t]->count; i++)
+            if (!is_taken(c, t, c->tables[t]->options[i].name))
+                print_option(&c->tables[t]->options[i]);
     }
     printf("\nAn option's value follows a space or `=` and may begin with `-`.\n\nExample:\n%s\n", c->example);
 }

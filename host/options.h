@@ -31,7 +31,7 @@ typedef struct command {
     bool more;                                     /* the last one may be there any number of times */
     const char *summary;                           /* one line */
     const char *example;                           /* whole command lines */
-    const option_table *tables[OPTION_TABLES + 1]; /* NULL after the last */
+    const option_table *tables[OPTION_TABLES + 1]; /* NULL after the last; of a name in two the first has it */
     /* argv[0] is the subcommand's name. The exit code; an empty sentence says nothing on standard error. */
     host_status (*run)(int argc, char **argv, host_error *error);
 } command;

@@ -107,6 +107,7 @@ static void print_summary(const command_options *options, const scene *s, const 
         printf("%d slices\n", s->view.slices);
     printf("numbers            %s%s%s\n", reference_numbers_name(c),
            c->fixed ? ", machine " : ", empty space: ", c->fixed ? s->machine_name : reference_accel_name(c));
+    printf("filter             %s\n", reference_filter_name(c, s));
     printf("device             %s\n", r->device);
     text_print_count("samples", r->samples, "");
     printf("time               %.6f s, %.1f million samples a second\n", r->wall_s, reference_samples_per_s(r) / 1e6);

@@ -1,6 +1,8 @@
 /* reference_options.c - the options of `vodr reference` beyond the view, and which of them go together. */
 #include "reference_options.h"
 
+#include <string.h>
+
 #include "text.h"
 
 enum { FIXED = REFERENCE_TEXTURE + 1 }; /* of --numbers, behind those of floating point */
@@ -12,9 +14,15 @@ static const char *const numbers[] = {[REFERENCE_FLOAT] = "float",
                                       [REFERENCE_TEXTURE] = "texture",
                                       [FIXED] = "fixed",
                                       NULL};
-static const char *const accels[] = {
-    [REFERENCE_ACCEL_NONE] = "none", [REFERENCE_ACCEL_BLOCK] = "block", [REFERENCE_ACCEL_BISECT] = "bisect",
-    [REFERENCE_ACCEL_SEED] = "seed", [REFERENCE_ACCEL_BEST] = "best",   NULL};
+static const char *const accels[] = {[REFERENCE_ACCEL_NONE] = "none",     [REFERENCE_ACCEL_BLOCK] = "block",
+                                     [REFERENCE_ACCEL_BISECT] = "bisect", [REFERENCE_ACCEL_SEED] = "seed",
+                                     [REFERENCE_ACCEL_BEST] = "best",     [REFERENCE_ACCEL_RIVAL] = "rival",
+                                     [REFERENCE_ACCEL_HULL] = "hull",     NULL};
+static const char *const filters[] = {[REFERENCE_NEAREST] = "nearest",
+                                      [REFERENCE_LINEAR] = "linear",
+                                      [REFERENCE_CARDINAL] = "cardinal",
+                                      [REFERENCE_BSPLINE] = "bspline",
+                                      NULL};
 static const char *const shadings[] = {[REFERENCE_UNLIT] = "none", [REFERENCE_PHONG] = "phong", NULL};
 
 static host_status set_device(void *target, const option *o, const char *value, host_error *error)
@@ -51,11 +59,23 @@ static host_status set_accel(void *target, const option *o, const char *value, h
 {
     int i;
     reference_wish *w = target;
-    host_status status = option_word(o, value, accels, "none, block, bisect, seed or best", &i, error);
+    host_status status = option_word(o, value, accels, "none, block, bisect, seed, best, rival or hull", &i, error);
     if (status != HOST_OK)
         return status;
     w->choice.accel = (reference_accel)i;
     w->has_accel = true;
+    return HOST_OK;
+}
+
+static host_status set_filter(void *target, const option *o, const char *value, host_error *error)
+{
+    int i;
+    reference_wish *w = target;
+    host_status status = option_word(o, value, filters, "nearest, linear, cardinal or bspline", &i, error);
+    if (status != HOST_OK)
+        return status;
+    w->choice.filter = (reference_filter)i;
+    w->machine_filter = reference_is_cubic(w->choice.filter) ? NULL : filters[i];
     return HOST_OK;
 }
 
@@ -111,9 +131,14 @@ static const option rows[] = {
      "byte; texture has weights of 8 bits, as a card's texture\n"
      "unit"},
     {"accel", 0, "ACCEL", false, set_accel,
-     "none, block, bisect, seed, best (best)\n"
+     "none, block, bisect, seed, best, rival, hull (best)\n"
      "how what does not show is passed over; the picture is\n"
-     "the same; bisect and seed are of mip"},
+     "the same; bisect and seed are of mip, rival and hull of\n"
+     "cubic filters, which have none and best beside"},
+    {"filter", 0, "FILTER", false, set_filter,
+     "nearest, linear, cardinal, bspline (linear)\n"
+     "cardinal and bspline weight 64 voxels, by Catmull and\n"
+     "Rom's cubics through them and by B-splines"},
     {"step", 0, "VOXELS", false, set_step, "raycast: finest voxels between samples, 0.01 to 1000 (1)"},
     {"block", 0, "N", false, set_block, "edge of the blocks of --accel in voxels, 2 to 32768 (8)"},
     {"shading", 0, "SHADING", false, set_shading, "none or phong; phong is light from the eye (none)"},
@@ -148,6 +173,21 @@ static host_status refuse_fixed(const reference_wish *w, host_error *error)
     return HOST_OK;
 }
 
+static host_status refuse_cubic(const reference_wish *w, host_error *error)
+{
+    const reference_choice *c = &w->choice;
+    const bool fixed = c->fixed, cubic = reference_is_cubic(c->filter);
+    if (cubic && (fixed || c->numbers == REFERENCE_TEXTURE))
+        return host_fail(error, HOST_BAD_INPUT,
+                         "--filter %s does not go with --numbers %s: cardinal and bspline go with float and double",
+                         filters[c->filter], numbers[fixed ? (int)FIXED : (int)c->numbers]);
+    if (w->has_accel && !reference_accel_suits(c->accel, REFERENCE_MIP, cubic ? c->filter : REFERENCE_LINEAR))
+        return host_fail(error, HOST_BAD_INPUT, "--accel %s does not go with filter=%s, which has %s", accels[c->accel],
+                         filters[cubic ? c->filter : REFERENCE_LINEAR],
+                         cubic ? "none, best, rival, hull" : "none, block, bisect, seed, best");
+    return HOST_OK;
+}
+
 static host_status refuse_view(const reference_wish *w, const view_options *v, host_error *error)
 {
     vodr_machine machine;
@@ -158,21 +198,32 @@ static host_status refuse_view(const reference_wish *w, const view_options *v, h
     if (status == HOST_OK && machine.blend == VODR_BLEND_MIP && w->choice.shading == REFERENCE_PHONG)
         return host_fail(error, HOST_BAD_INPUT,
                          "--shading phong does not go with blend=mip: it goes with over and under");
-    if (status == HOST_OK && machine.blend != VODR_BLEND_MIP && !reference_accel_suits(w->choice.accel, REFERENCE_OVER))
+    if (status == HOST_OK && machine.blend != VODR_BLEND_MIP &&
+        !reference_accel_suits(w->choice.accel, REFERENCE_OVER, REFERENCE_LINEAR) &&
+        !reference_is_cubic(w->choice.filter))
         return host_fail(error, HOST_BAD_INPUT, "--accel %s goes with blend=mip: over and under have none, block, best",
                          accels[w->choice.accel]);
     return status;
 }
 
-host_status reference_wish_settle(reference_wish *w, const view_options *v, host_error *error)
+host_status reference_wish_settle(reference_wish *w, view_options *v, host_error *error)
 {
     reference_choice *c = &w->choice;
+    static const char filter[] = "filter";
+    if (w->machine_filter) {
+        host_status status = view_options_override(v, filter, filter, strlen(filter), w->machine_filter, error);
+        if (status != HOST_OK)
+            return status;
+    }
     if (c->fixed) {
         host_status status = refuse_fixed(w, error);
         if (status != HOST_OK)
             return status;
         c->accel = REFERENCE_ACCEL_NONE;
     }
+    host_status cubic = refuse_cubic(w, error);
+    if (cubic != HOST_OK)
+        return cubic;
     if (w->has_step && c->method == REFERENCE_SLICES)
         return host_fail(error, HOST_BAD_INPUT,
                          "--step goes with --method raycast: slices are as far apart as --slices makes them");
@@ -205,6 +256,11 @@ const char *reference_numbers_name(const reference_choice *c)
 const char *reference_accel_name(const reference_choice *c)
 {
     return accels[c->accel];
+}
+
+const char *reference_filter_name(const reference_choice *c, const scene *s)
+{
+    return filters[reference_scene_filter(s, c)];
 }
 
 const char *reference_shading_name(const reference_choice *c)

@@ -8,6 +8,7 @@
 /* A choice being made. */
 typedef struct reference_wish {
     reference_choice choice;
+    const char *machine_filter; /* of --filter, where it is one of the machine's; NULL: not given */
     bool has_accel, has_step, has_block, has_shading, has_termination; /* given on the command line */
 } reference_wish;
 
@@ -17,14 +18,16 @@ extern const option_table option_reference;
 /* CPU, slices, float, best. */
 reference_wish reference_wish_default(void);
 
-/* Fills in the defaults that depend on others; refuses what does not go together, before any work. */
-host_status reference_wish_settle(reference_wish *w, const view_options *v, host_error *error);
+/* Fills in the defaults that depend on others, and the machine's filter; refuses what does not go together, before any
+ * work. */
+host_status reference_wish_settle(reference_wish *w, view_options *v, host_error *error);
 
 /* The words that the options take. */
 const char *reference_device_word(const reference_choice *c);
 const char *reference_method_name(const reference_choice *c);
 const char *reference_numbers_name(const reference_choice *c);
 const char *reference_accel_name(const reference_choice *c);
+const char *reference_filter_name(const reference_choice *c, const scene *s);
 const char *reference_shading_name(const reference_choice *c);
 
 #endif

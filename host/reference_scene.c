@@ -82,6 +82,13 @@ static reference_camera camera_of(const scene *s, const reference_choice *c)
     return slices;
 }
 
+reference_filter reference_scene_filter(const scene *s, const reference_choice *c)
+{
+    if (reference_is_cubic(c->filter))
+        return c->filter;
+    return s->machine.filter == VODR_FILTER_NEAREST ? REFERENCE_NEAREST : REFERENCE_LINEAR;
+}
+
 /* The scene's transfer function as a table of the job, for samples so many finest voxels long. */
 static host_status fill_table(const scene *s, double depth_vox, double **entries, reference_table *table,
                               host_error *error)
@@ -119,7 +126,7 @@ host_status reference_scene_job(const scene *s, const reference_choice *c, doubl
         .camera = camera_of(s, c),
         .numbers = c->numbers,
         .blend = mip ? REFERENCE_MIP : REFERENCE_OVER,
-        .filter = s->machine.filter == VODR_FILTER_NEAREST ? REFERENCE_NEAREST : REFERENCE_LINEAR,
+        .filter = reference_scene_filter(s, c),
         .shading = c->shading,
         .accel = c->accel,
         .block_vox = c->block_vox,

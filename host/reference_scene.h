@@ -15,6 +15,7 @@ typedef struct reference_choice {
     bool fixed;                /* the machine's own arithmetic; else: */
     reference_numbers numbers; /* and all that follows */
     reference_accel accel;
+    reference_filter filter; /* a cubic; else the machine's is drawn with */
     reference_shading shading;
     double step_vox; /* raycast: finest voxels between samples */
     int32_t block_vox;
@@ -48,6 +49,9 @@ void reference_scene_close(reference_scene *r);
 /* Draws a frame of the machine's fb_bits, to be freed by vodr_frame_free(). */
 host_status reference_scene_draw(const reference_scene *r, vodr_frame *frame, reference_stats *stats,
                                  host_error *error);
+
+/* The filter that a scene is drawn with. */
+reference_filter reference_scene_filter(const scene *s, const reference_choice *c);
 
 /* What a failure of reference/ is as an exit code. */
 host_status reference_scene_status(reference_status status);

@@ -131,8 +131,8 @@ static host_status set_machine(void *target, const option *o, const char *value,
     return HOST_OK;
 }
 
-static host_status add_override(view_options *v, const option *o, const char *parameter, size_t n, const char *value,
-                                host_error *error)
+host_status view_options_override(view_options *v, const char *name_of_option, const char *parameter, size_t n,
+                                  const char *value, host_error *error)
 {
     machine_override *grown = realloc(v->overrides, (v->override_count + 1) * sizeof *grown);
     char *name = strndup(parameter, n);
@@ -140,16 +140,16 @@ static host_status add_override(view_options *v, const option *o, const char *pa
         v->overrides = grown;
     if (!grown || !name) {
         free(name);
-        return host_fail(error, HOST_ENVIRONMENT, "no memory for --%s", o->name);
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for --%s", name_of_option);
     }
-    v->overrides[v->override_count++] = (machine_override){o->name, name, value};
+    v->overrides[v->override_count++] = (machine_override){name_of_option, name, value};
     return HOST_OK;
 }
 
 /* --blend, --filter, --traversal: the machine's parameter of that name. */
 static host_status set_parameter(void *target, const option *o, const char *value, host_error *error)
 {
-    return add_override(target, o, o->name, strlen(o->name), value, error);
+    return view_options_override(target, o->name, o->name, strlen(o->name), value, error);
 }
 
 static host_status set_override(void *target, const option *o, const char *value, host_error *error)
@@ -157,7 +157,7 @@ static host_status set_override(void *target, const option *o, const char *value
     size_t n = strcspn(value, "=");
     if (n == 0 || value[n] == '\0')
         return option_refuse(o, value, "PARAM=VALUE (`vodr machine show paper-16` lists the parameters)", error);
-    return add_override(target, o, value, n, value + n + 1, error);
+    return view_options_override(target, o->name, value, n, value + n + 1, error);
 }
 
 static host_status set_energy(void *target, const option *o, const char *value, host_error *error)

@@ -44,6 +44,10 @@ void view_options_free(view_options *v);
  * be. */
 host_status view_options_output(const view_options *v, const char *input, const char *path, host_error *error);
 
+/* Adds what --`option` PARAM=VALUE would; the parameter's name is the first n characters. */
+host_status view_options_override(view_options *v, const char *option, const char *parameter, size_t n,
+                                  const char *value, host_error *error);
+
 /* The machine that --machine names: a named one or a file (a name that holds a '/' or that a file has). */
 host_status view_options_named_machine(const char *name, vodr_machine *machine, host_error *error);
 

@@ -40,7 +40,7 @@ static void block_range(const reference_volume *v, int32_t edge, const int32_t a
     *most = max + margin;
 }
 
-reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error)
+reference_status blocks_alloc(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error)
 {
     *b = (blocks){.edge_vox = edge_vox};
     for (int a = 0; a < 3; a++)
@@ -52,8 +52,16 @@ reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks
         blocks_free(b);
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
     }
+    return REFERENCE_OK;
+}
+
+reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error)
+{
     int32_t at[3];
     size_t i = 0;
+    reference_status status = blocks_alloc(v, edge_vox, b, error);
+    if (status != REFERENCE_OK)
+        return status;
     for (at[2] = 0; at[2] < b->count[2]; at[2]++)
         for (at[1] = 0; at[1] < b->count[1]; at[1]++)
             for (at[0] = 0; at[0] < b->count[0]; at[0]++, i++)
@@ -82,12 +90,21 @@ static void count_visible(const reference_table *t, int32_t *visible)
     }
 }
 
-/* Whether all columns that values from least to most meet are transparent, with an entry's margin. */
+/* The columns that a value at a place in the table meets, with an entry's margin. */
+static int32_t first_column(double place, int32_t columns)
+{
+    return (int32_t)fmin(fmax(floor(place - 0.001), 0), columns - 1);
+}
+
+static int32_t last_column(double place, int32_t columns)
+{
+    return (int32_t)fmin(fmax(floor(place + 0.001) + 1, 0), columns - 1);
+}
+
+/* Whether all columns that values from least to most meet are transparent. */
 static bool transparent(const int32_t *visible, int32_t columns, double least, double most)
 {
-    int32_t first = (int32_t)fmin(fmax(floor(least - 0.001), 0), columns - 1);
-    int32_t last = (int32_t)fmin(fmax(floor(most + 0.001) + 1, 0), columns - 1);
-    return visible[last + 1] == visible[first];
+    return visible[last_column(most, columns) + 1] == visible[first_column(least, columns)];
 }
 
 /* Lowers own[] to one more than the least of beside[] at the same place and on both sides of it. */
@@ -180,4 +197,35 @@ reference_status blocks_classify(blocks *b, const reference_table *table, double
     }
     free(visible);
     return REFERENCE_OK;
+}
+
+/* ---- cubics ---- */
+
+reference_status blocks_classify_cells(hull_scale s, const reference_table *table, double scale, double offset,
+                                       uint8_t shows[CELL_CODES], vodr_error *error)
+{
+    const double last = table->columns - 1;
+    int32_t below[256], above[256]; /* where what a code of the least, and of the greatest, shows begins or ends */
+    int32_t *visible = malloc(((size_t)table->columns + 1) * sizeof *visible);
+    if (!visible)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a table of %d columns", table->columns);
+    count_visible(table, visible);
+    for (uint32_t i = 0; i < 256; i++) {
+        const double p = (hull_least(s, i) * scale + offset) * last, q = (hull_greatest(s, i) * scale + offset) * last;
+        below[i] = scale < 0 ? last_column(p, table->columns) + 1 : first_column(p, table->columns);
+        above[i] = scale < 0 ? first_column(q, table->columns) : last_column(q, table->columns) + 1;
+    }
+    for (uint32_t code = 0; code < CELL_CODES; code++)
+        shows[code] = visible[below[code & 255]] != visible[above[code >> 8]];
+    free(visible);
+    return REFERENCE_OK;
+}
+
+void blocks_encode(const blocks *b, hull_scale s, uint16_t *codes, kernel_bounds *bounds)
+{
+    const double step = ((double)s.most - (double)s.least) / UINT16_MAX;
+    for (size_t i = 0, count = blocks_count(b); i < count; i++)
+        codes[i] = (uint16_t)fmin(fmax(ceil(((double)b->most[i] - (double)s.least) / step), 0), UINT16_MAX);
+    bounds->scale = (float)step;
+    bounds->offset_value = (float)((double)s.least + step);
 }

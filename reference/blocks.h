@@ -2,7 +2,7 @@
 #ifndef REFERENCE_BLOCKS_H
 #define REFERENCE_BLOCKS_H
 
-#include "kernel_types.h"
+#include "hull.h"
 
 /* Ranges of stored values that samples in a block can have; block (i, j, l) is number (l*count[1] + j)*count[0] + i. */
 typedef struct blocks {
@@ -13,7 +13,10 @@ typedef struct blocks {
     size_t known_count;
 } blocks;
 
-/* Makes the ranges of blocks of edge_vox cells (kernel_types.h). */
+/* Room for the ranges of blocks of edge_vox cells (kernel_types.h), which is empty. */
+reference_status blocks_alloc(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error);
+
+/* The same with the ranges of voxels in it. */
 reference_status blocks_make(const reference_volume *v, int32_t edge_vox, blocks *b, vodr_error *error);
 void blocks_free(blocks *b);
 
@@ -21,6 +24,13 @@ void blocks_free(blocks *b);
  * counting 1, the nearest such block is (255 at most); without, 1. Asked again for the same, it is there already. */
 reference_status blocks_classify(blocks *b, const reference_table *table, double scale, double offset, bool far,
                                  vodr_error *error);
+
+/* Fills shows[] for the codes of cells (kernel_cells): whether a table shows anything of what a code stands for. */
+reference_status blocks_classify_cells(hull_scale s, const reference_table *table, double scale, double offset,
+                                       uint8_t shows[CELL_CODES], vodr_error *error);
+
+/* Fills codes[] of the greatest values in the blocks, for KERNEL_LEAP, and what they stand for. */
+void blocks_encode(const blocks *b, hull_scale s, uint16_t *codes, kernel_bounds *bounds);
 
 static inline size_t blocks_count(const blocks *b)
 {

@@ -71,4 +71,5 @@ KERNEL void march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rg
     const cpu_kernels table = {                                                                                        \
         #set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP, set##_KERNEL_LEAP, set##_KERNEL_SEARCH}}
 
-#define NOT_CELLS f->filter == KERNEL_CELLS ? KERNEL_LINEAR : f->filter
+#define NOT_CELLS                                                                                                      \
+    f->filter == KERNEL_NEAREST ? KERNEL_NEAREST : f->filter == KERNEL_TEXTURE ? KERNEL_TEXTURE : KERNEL_LINEAR

@@ -2,7 +2,7 @@
 #ifndef REFERENCE_DEVICE_H
 #define REFERENCE_DEVICE_H
 
-#include "kernel_types.h"
+#include "hull.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -17,6 +17,16 @@ typedef struct device_march {
     kernel_mode mode;
 } device_march;
 
+/* What the samples of a cubic filter can be in each block: to be filled in. With `cells` the device keeps what they can
+ * be in each cell too, for KERNEL_SKIP_CELLS. */
+typedef struct device_ranges {
+    bool spline, cells;
+    hull_bound bound;
+    int32_t edge_vox, count[3];
+    float *least, *most;
+    hull_scale *scale; /* of the cells' codes */
+} device_ranges;
+
 typedef struct device_ops {
     /* Puts the volume on the device; *state is closed by close(). name receives what the device is. */
     reference_status (*open)(const reference_options *options, const reference_volume *volume, void **state,
@@ -27,6 +37,8 @@ typedef struct device_ops {
                               vodr_error *error);
     reference_status (*march)(void *state, const device_march *m, double *rgba, reference_stats *stats,
                               vodr_error *error);
+    /* Fills the ranges of blocks; adds to preprocess_ms of *stats. */
+    reference_status (*ranges)(void *state, const device_ranges *r, reference_stats *stats, vodr_error *error);
 } device_ops;
 
 extern const device_ops device_cpu;

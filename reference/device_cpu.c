@@ -1,18 +1,14 @@
 /* device_cpu.c - the CPU as a device: bands of rows, or of layers, dealt out to threads. */
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "bounds.h"
 #include "cells.h"
-#include "cpu_march.h"
-#include "device.h"
+#include "cpu_cubic.h"
+#include "cpu_job.h"
 #include "kernel_fixed.h"
 #include "pages.h"
-
-enum { BAND = CPU_TILE_PX, MAX_THREADS = 256 };
 
 typedef struct cpu_state {
     int32_t threads;
@@ -24,28 +20,8 @@ typedef struct cpu_state {
     kernel_bounds bounds;  /* codes owned; NULL until a search needs them */
     uint16_t *block_codes; /* owned; of the last edge asked for */
     int32_t block_edge_vox;
+    cpu_cubic cubic[2]; /* of cardinal splines, of B-splines */
 } cpu_state;
-
-/* Work in rows: `work` is called for bands of them until none is left. */
-typedef struct cpu_job cpu_job;
-struct cpu_job {
-    void (*work)(const cpu_job *job, int32_t begin, int32_t end, uint64_t *samples);
-    const void *input; /* what the work is on: a kernel_fixed, a kernel_frame, a reference_volume or a cpu_state */
-    void *output;
-    cpu_march_rows *march_rows;
-    int32_t grid; /* edge of a block, or number of a grid */
-    int32_t rows;
-    pthread_mutex_t lock; /* over what follows */
-    int32_t next;
-    uint64_t samples;
-};
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 static void fixed_rows(const cpu_job *job, int32_t y0, int32_t y1, uint64_t *samples)
 {
@@ -112,37 +88,9 @@ static void widen_rows(const cpu_job *job, int32_t j0, int32_t j1, uint64_t *sam
     bounds_widen_rows(&s->bounds, job->grid, j0, j1, job->output);
 }
 
-static void *thread_main(void *context)
-{
-    cpu_job *job = context;
-    uint64_t samples = 0;
-    for (;;) {
-        pthread_mutex_lock(&job->lock);
-        int32_t begin = job->next, end = job->rows - begin > BAND ? begin + BAND : job->rows;
-        job->next = end;
-        if (begin == end)
-            job->samples += samples;
-        pthread_mutex_unlock(&job->lock);
-        if (begin == end)
-            return NULL;
-        job->work(job, begin, end, &samples);
-    }
-}
-
-/* Returns milliseconds. A thread that cannot be started is done without. */
 static double run(const cpu_state *s, cpu_job *job)
 {
-    pthread_t threads[MAX_THREADS];
-    int32_t started = 0;
-    double begin_ms = now_ms();
-    pthread_mutex_init(&job->lock, NULL);
-    while (started < s->threads - 1 && pthread_create(&threads[started], NULL, thread_main, job) == 0)
-        started++;
-    thread_main(job);
-    while (started > 0)
-        pthread_join(threads[--started], NULL);
-    pthread_mutex_destroy(&job->lock);
-    return now_ms() - begin_ms;
+    return cpu_job_run(s->threads, job);
 }
 
 static reference_status cpu_open(const reference_options *options, const reference_volume *volume, void **state,
@@ -250,32 +198,63 @@ static reference_status need_grids(cpu_state *s, kernel_frame *f, vodr_error *er
 static reference_status need_bounds(cpu_state *s, kernel_mode mode, kernel_frame *f, reference_stats *stats,
                                     vodr_error *error)
 {
-    if (mode != KERNEL_LEAP && mode != KERNEL_SEARCH)
+    if ((mode != KERNEL_LEAP && mode != KERNEL_SEARCH) || f->filter == KERNEL_CUBIC)
         return REFERENCE_OK;
     const bool known = mode == KERNEL_SEARCH ? s->bounds.codes != NULL : s->block_edge_vox == f->blocks.edge_vox;
-    const double begin_ms = now_ms();
+    const double begin_ms = cpu_now_ms();
     need_code(s);
     reference_status status = mode == KERNEL_LEAP ? need_blocks(s, f, error) : need_grids(s, f, error);
     bounds_decode(&s->code, f->filter, &f->bounds);
     if (!known)
-        stats->preprocess_ms += now_ms() - begin_ms;
+        stats->preprocess_ms += cpu_now_ms() - begin_ms;
     return status;
+}
+
+/* ---- cubics ---- */
+
+static reference_status cpu_ranges(void *state, const device_ranges *r, reference_stats *stats, vodr_error *error)
+{
+    cpu_state *s = state;
+    const hull_rows *rows;
+    cpu_cubic_best(s->simd, &rows);
+    return cpu_cubic_ranges(&s->cubic[r->spline], &s->volume, r, s->threads, rows, stats, error);
+}
+
+static reference_status need_cubic(cpu_state *s, kernel_frame *f, reference_stats *stats, vodr_error *error)
+{
+    cpu_cubic *c = &s->cubic[f->volume.spline];
+    reference_status status = cpu_cubic_volume(c, &s->volume, f->volume.spline, s->threads, stats, error);
+    f->volume.type = c->volume.type;
+    f->volume.voxels = c->volume.voxels;
+    f->cells.codes = c->codes;
+    return status;
+}
+
+static const cpu_kernels *kernels_of(const cpu_state *s, const device_march *m)
+{
+    const bool is_double = m->numbers == REFERENCE_DOUBLE;
+    const hull_rows *rows;
+    if (m->frame.filter == KERNEL_CUBIC)
+        return is_double ? &cpu_cubic_double : cpu_cubic_best(s->simd, &rows);
+    if (m->numbers == REFERENCE_FLOAT && m->frame.filter == KERNEL_LINEAR && cells_suit(&s->volume))
+        return cpu_kernels_best(s->simd);
+    return is_double ? &cpu_kernels_double : &cpu_kernels_float;
 }
 
 static reference_status cpu_march(void *state, const device_march *m, double *rgba, reference_stats *stats,
                                   vodr_error *error)
 {
     cpu_state *s = state;
-    const cpu_kernels *k = m->numbers == REFERENCE_DOUBLE ? &cpu_kernels_double : &cpu_kernels_float;
+    const cpu_kernels *k = kernels_of(s, m);
     kernel_frame f = m->frame;
-    if (m->numbers == REFERENCE_FLOAT && f.filter == KERNEL_LINEAR && cells_suit(&s->volume))
-        k = cpu_kernels_best(s->simd);
     reference_status status = need_bounds(s, m->mode, &f, stats, error);
     if (status == REFERENCE_OK && k->cells && m->mode != KERNEL_SEARCH) {
         status = need_cells(s, stats, error);
         f.filter = KERNEL_CELLS;
         f.volume.cells = s->cells;
     }
+    if (status == REFERENCE_OK && f.filter == KERNEL_CUBIC)
+        status = need_cubic(s, &f, stats, error);
     if (status != REFERENCE_OK)
         return status;
     cpu_job job = {
@@ -291,7 +270,9 @@ static void cpu_close(void *state)
     free(s->cells);
     free((void *)s->bounds.codes);
     free(s->block_codes);
+    for (int i = 0; i < 2; i++)
+        cpu_cubic_free(&s->cubic[i]);
     free(s);
 }
 
-const device_ops device_cpu = {cpu_open, cpu_close, cpu_fixed, cpu_march};
+const device_ops device_cpu = {cpu_open, cpu_close, cpu_fixed, cpu_march, cpu_ranges};

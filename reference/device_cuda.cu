@@ -6,11 +6,11 @@
 
 #define REAL float
 #include "bounds_cuda.h"
+#include "cells_cuda.h"
+#include "cubic_cuda.h"
 #include "device.h"
-#include "kernel_cast.h"
 #include "kernel_fixed.h"
-#include "kernel_ray.h"
-#include "launch_cuda.h"
+#include "march_cuda.h"
 
 enum { BLOCK_W = 16, BLOCK_H = 8 };
 
@@ -25,6 +25,7 @@ typedef struct cuda_state {
     kernel_bounds bounds;  /* codes on the card; NULL until a search needs them */
     uint16_t *block_codes; /* on the card; of the last edge asked for */
     int32_t block_edge_vox;
+    cubic_cuda cubic[2]; /* of cardinal splines, of B-splines */
     cudaEvent_t begin, end;
 } cuda_state;
 
@@ -80,6 +81,10 @@ static void cuda_close(void *state)
     cudaFree(s->cells);
     cudaFree((void *)s->bounds.codes);
     cudaFree(s->block_codes);
+    for (int i = 0; i < 2; i++) {
+        cudaFree(s->cubic[i].coefficients);
+        cudaFree(s->cubic[i].codes);
+    }
     if (s->begin)
         cudaEventDestroy(s->begin);
     if (s->end)
@@ -258,27 +263,6 @@ static reference_status cuda_fixed(void *state, const kernel_fixed *f, vodr_rgba
 
 /* ---- floating point ---- */
 
-/* A cell of 8-bit or 16-bit voxels is eight of them. */
-template <typename voxel, typename word>
-static __global__ void pack_cells(const voxel *voxels, int3 size, word *cells, unsigned count)
-{
-    unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
-    if (i >= count)
-        return;
-    const int row = size.x + 1, layer = row * (size.y + 1);
-    int z = i / layer, y = i % layer / row, x = i % layer % row;
-    union {
-        voxel corner[8];
-        word whole_cell;
-    } cell;
-    for (int n = 0; n < 8; n++) {
-        int nx = min(max(x - 1 + (n & 1), 0), size.x - 1), ny = min(max(y - 1 + (n >> 1 & 1), 0), size.y - 1);
-        int nz = min(max(z - 1 + (n >> 2), 0), size.z - 1);
-        cell.corner[n] = voxels[((size_t)nz * size.y + ny) * size.x + nx];
-    }
-    cells[i] = cell.whole_cell;
-}
-
 /* Packs the volume's cells once; without room for them, or with voxels that cannot be packed, there are none. */
 static reference_status want_cells(cuda_state *s, reference_stats *stats, vodr_error *error)
 {
@@ -338,7 +322,8 @@ static reference_status make_codes(cuda_state *s, frame_memory *m, int32_t edge_
     const int32_t *dims = s->volume.dims_vox;
     uint16_t *spare[3];
     float ms;
-    const size_t cut = edge_vox ? (size_t)dims[0] * dims[1] * bounds_count(dims[2], edge_vox) : (size_t)s->bounds.count[1][0] * s->bounds.count[1][1] * s->bounds.count[1][2];
+    const size_t cut = edge_vox ? (size_t)dims[0] * dims[1] * bounds_count(dims[2], edge_vox)
+                                : (size_t)s->bounds.count[1][0] * s->bounds.count[1][1] * s->bounds.count[1][2];
     TRY_STATUS(need_linear(s, error));
     TRY_STATUS(check_room((count + (edge_vox ? 2 : 3) * cut) * sizeof **codes, "the volume's maxima", error));
     for (int i = 0; i < (edge_vox ? 2 : 3); i++) {
@@ -385,7 +370,7 @@ static reference_status need_codes(cuda_state *s, kernel_mode mode, const kernel
 static reference_status take_bounds(cuda_state *s, kernel_mode mode, kernel_frame *f, reference_stats *stats,
                                     vodr_error *error)
 {
-    if (mode != KERNEL_LEAP && mode != KERNEL_SEARCH)
+    if ((mode != KERNEL_LEAP && mode != KERNEL_SEARCH) || f->filter == KERNEL_CUBIC)
         return REFERENCE_OK;
     if (!s->has_code)
         s->code = bounds_code_of(&s->volume);
@@ -397,110 +382,113 @@ static reference_status take_bounds(cuda_state *s, kernel_mode mode, kernel_fram
     return REFERENCE_OK;
 }
 
+/* ---- cubics ---- */
+
+/* Waits for what was begun at s->begin. */
+static reference_status add_time(cuda_state *s, reference_stats *stats, vodr_error *error)
+{
+    float ms;
+    TRY(cudaGetLastError());
+    TRY(cudaEventRecord(s->end));
+    TRY(cudaEventSynchronize(s->end));
+    TRY(cudaEventElapsedTime(&ms, s->begin, s->end));
+    stats->preprocess_ms += ms;
+    return REFERENCE_OK;
+}
+
+/* The coefficients of B-splines, once. */
+static reference_status need_coefficients(cuda_state *s, frame_memory *m, reference_stats *stats, vodr_error *error)
+{
+    cubic_cuda *c = &s->cubic[true];
+    const int32_t *dims = s->volume.dims_vox;
+    const size_t bytes = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2] * sizeof(float);
+    void *spare;
+    if (c->coefficients)
+        return REFERENCE_OK;
+    TRY_STATUS(check_room(2 * bytes, "the volume's coefficients", error));
+    TRY_STATUS(take(m, bytes, NULL, &spare, error));
+    TRY(cudaMalloc(&c->coefficients, bytes));
+    TRY(cudaEventRecord(s->begin));
+    cubic_start_prefilter(&s->volume, s->linear, (float *)spare, c->coefficients);
+    return add_time(s, stats, error);
+}
+
+/* The volume that a filter reads, on the card. */
+static reference_status need_cubic(cuda_state *s, frame_memory *m, bool spline, reference_volume *v,
+                                   reference_stats *stats, vodr_error *error)
+{
+    TRY_STATUS(need_linear(s, error));
+    *v = s->volume;
+    v->voxels = s->linear;
+    if (!spline)
+        return REFERENCE_OK;
+    TRY_STATUS(need_coefficients(s, m, stats, error));
+    v->type = REFERENCE_FLOAT32;
+    v->voxels = s->cubic[true].coefficients;
+    return REFERENCE_OK;
+}
+
+/* The scale of a filter's bounds, once; ends[] has room for two numbers on the card. */
+static reference_status need_scale(cuda_state *s, const reference_volume *v, bool spline, int32_t *ends,
+                                   vodr_error *error)
+{
+    cubic_cuda *c = &s->cubic[spline];
+    int32_t found[2] = {INT32_MAX, INT32_MIN};
+    if (c->has_scale)
+        return REFERENCE_OK;
+    TRY(cudaMemcpy(ends, found, sizeof found, cudaMemcpyHostToDevice));
+    cubic_start_extremes(v, ends);
+    TRY(cudaMemcpy(found, ends, sizeof found, cudaMemcpyDeviceToHost));
+    c->scale = hull_scale_of(spline, cubic_float(found[0]), cubic_float(found[1]));
+    c->has_scale = true;
+    return REFERENCE_OK;
+}
+
+static reference_status make_ranges(cuda_state *s, frame_memory *m, const device_ranges *r, reference_stats *stats,
+                                    vodr_error *error)
+{
+    cubic_cuda *c = &s->cubic[r->spline];
+    reference_volume v;
+    const size_t count = (size_t)r->count[0] * (size_t)r->count[1] * (size_t)r->count[2];
+    const bounds_box cells = cubic_cells(s->volume.dims_vox), blocks = bounds_box_of(r->count);
+    const size_t codes = r->cells && !c->codes ? bounds_box_count(cells) : 0;
+    void *least, *most;
+    TRY_STATUS(need_cubic(s, m, r->spline, &v, stats, error));
+    TRY_STATUS(check_room(2 * (count + 1) * sizeof(float) + codes * sizeof(uint16_t), "the volume's bounds", error));
+    TRY_STATUS(take(m, (count + 1) * sizeof(float), NULL, &least, error));
+    TRY_STATUS(take(m, (count + 1) * sizeof(float), NULL, &most, error));
+    if (codes)
+        TRY(cudaMalloc(&c->codes, codes * sizeof(uint16_t)));
+    TRY(cudaEventRecord(s->begin));
+    TRY_STATUS(need_scale(s, &v, r->spline, (int32_t *)least, error));
+    *r->scale = c->scale;
+    if (r->bound == HULL_BEZIER)
+        cubic_start_hull(&v, r->spline, c->scale, blocks, r->edge_vox, (int32_t *)least, (int32_t *)most,
+                         codes ? c->codes : NULL);
+    else
+        cubic_start_rival(&v, c->scale, hull_share(r->bound, r->spline), blocks, r->edge_vox, (float *)least,
+                          (float *)most);
+    TRY_STATUS(add_time(s, stats, error));
+    TRY(cudaMemcpy(r->least, least, count * sizeof(float), cudaMemcpyDeviceToHost));
+    TRY(cudaMemcpy(r->most, most, count * sizeof(float), cudaMemcpyDeviceToHost));
+    return REFERENCE_OK;
+}
+
+static reference_status cuda_ranges(void *state, const device_ranges *r, reference_stats *stats, vodr_error *error)
+{
+    frame_memory m = {};
+    cuda_state *s = (cuda_state *)state;
+    const bool had = s->cubic[r->spline].codes != NULL;
+    reference_status status = make_ranges(s, &m, r, stats, error);
+    if (status != REFERENCE_OK && !had) { /* they may not be filled */
+        cudaFree(s->cubic[r->spline].codes);
+        s->cubic[r->spline].codes = NULL;
+    }
+    release(&m);
+    return status;
+}
+
 /* ---- marching ---- */
-
-/* ANY_TYPE: the voxels' type is asked at each read. */
-enum { BLOCK_THREADS = 256, SEARCH_THREADS = 64, SEARCH_BLOCKS = 16, TILE_PX = 4, ANY_TYPE = -1 };
-
-static constexpr __host__ __device__ int threads_of(kernel_mode mode)
-{
-    return mode == KERNEL_SEARCH ? SEARCH_THREADS : BLOCK_THREADS;
-}
-
-/* Puts a table of one row into shared memory, as lookup says. */
-static __device__ __forceinline__ lookup share_table(const kernel_table &t, int32_t copies_log2, float4 *shared)
-{
-    const float4 *rgba = (const float4 *)t.rgba;
-    for (int i = threadIdx.x; i < (t.columns + 1) << copies_log2; i += BLOCK_THREADS) {
-        int column = i >> copies_log2, next = min(column + 1, t.columns);
-        float4 e = rgba[column], n = rgba[next];
-        shared[2 * i] = e;
-        shared[2 * i + 1] = make_float4(n.x - e.x, n.y - e.y, n.z - e.z, n.w - e.w);
-    }
-    __syncthreads();
-    const int copy = threadIdx.x & ((1 << copies_log2) - 1);
-    return lookup{shared + 2 * copy, (int)(2 * sizeof(float4)) << copies_log2, true};
-}
-
-template <kernel_mode mode, kernel_filter filter, kernel_skip skip, int known_type>
-static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH ? SEARCH_BLOCKS
-                                                           : mode == KERNEL_LIT  ? 2
-                                                                                 : 4)
-    march_kernel(const __grid_constant__ kernel_frame f, const march_launch launch, float4 *rgba, uint32_t *counts)
-{
-    extern __shared__ float4 shared[];
-    const reference_voxel type = known_type == ANY_TYPE ? f.volume.type : (reference_voxel)known_type;
-    const int thread = threadIdx.x;
-    lookup table = {(const float4 *)f.table.rgba, sizeof(float4), false};
-    if (mode == KERNEL_OVER || (mode == KERNEL_LIT && f.table.rows == 1))
-        table = share_table(f.table, launch.copies_log2, shared);
-    const int lane = thread & 31, warp = thread >> 5, width = 1 << launch.warp_log2, height = 32 >> launch.warp_log2;
-    int x = (blockIdx.x * 2 + (warp & 1)) * width, y = (blockIdx.y * (threads_of(mode) / 64) + (warp >> 1)) * height;
-    if (mode == KERNEL_SEARCH) { /* lanes that go together are a tile TILE_PX wide */
-        x += lane / TOGETHER * TILE_PX + lane % TILE_PX;
-        y += lane % TOGETHER / TILE_PX;
-    } else {
-        x += lane & (width - 1);
-        y += lane >> launch.warp_log2;
-    }
-    const bool inside = x < f.camera.width_px && y < f.camera.height_px;
-    kernel_ray ray = ray_none(&f.part);
-    if (inside)
-        ray = ray_make(&f, x, y);
-    packet rays;
-    for (int a = 0; a < 3; a++) {
-        rays.start[a] = (float)(ray.start[a] + place_shift(filter));
-        rays.step[a] = (float)ray.step[a];
-        rays.origin[a] = (float)f.part.origin_vox[a];
-    }
-    rays.skipped = (float)ray.skipped;
-    rays.count = ray.count;
-    rays.first = ray.first;
-    packet_result result = cast(&f, &table, &rays, mode, filter, skip, type);
-    if (!inside)
-        return;
-    size_t i = (size_t)y * f.camera.width_px + x;
-    rgba[i] = make_float4(result.rgba[0], result.rgba[1], result.rgba[2], result.rgba[3]);
-    counts[i] = (uint32_t)result.samples;
-}
-
-typedef void march_function(const kernel_frame f, const march_launch launch, float4 *rgba, uint32_t *counts);
-
-/* The kernel of a variant: each parameter in turn becomes a constant. */
-template <kernel_mode mode, kernel_skip skip> static march_function *by_filter(const kernel_frame *f)
-{
-    switch (f->filter) {
-    case KERNEL_NEAREST: return march_kernel<mode, KERNEL_NEAREST, skip, ANY_TYPE>;
-    case KERNEL_LINEAR:
-        if constexpr (mode == KERNEL_SEARCH) {
-            if (f->volume.type == REFERENCE_UINT8)
-                return march_kernel<mode, KERNEL_LINEAR, skip, REFERENCE_UINT8>;
-            if (f->volume.type == REFERENCE_UINT16)
-                return march_kernel<mode, KERNEL_LINEAR, skip, REFERENCE_UINT16>;
-        }
-        return march_kernel<mode, KERNEL_LINEAR, skip, ANY_TYPE>;
-    case KERNEL_CELLS:
-        return f->volume.type == REFERENCE_UINT8 ? march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT8>
-                                                 : march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT16>;
-    default: return march_kernel<mode, KERNEL_TEXTURE, skip, ANY_TYPE>;
-    }
-}
-
-template <kernel_mode mode> static march_function *by_skip(const kernel_frame *f)
-{
-    return f->skip == KERNEL_SKIP_NONE ? by_filter<mode, KERNEL_SKIP_NONE>(f) : by_filter<mode, KERNEL_SKIP_EMPTY>(f);
-}
-
-static march_function *march_variant(kernel_mode mode, const kernel_frame *f)
-{
-    switch (mode) {
-    case KERNEL_OVER: return by_skip<KERNEL_OVER>(f);
-    case KERNEL_LIT: return by_skip<KERNEL_LIT>(f);
-    case KERNEL_MIP: return by_filter<KERNEL_MIP, KERNEL_SKIP_NONE>(f);
-    case KERNEL_LEAP: return by_filter<KERNEL_LEAP, KERNEL_SKIP_NONE>(f);
-    default: return by_filter<KERNEL_SEARCH, KERNEL_SKIP_NONE>(f);
-    }
-}
 
 /* The frame's tables on the card, in place of the host's. */
 static reference_status take_tables(frame_memory *m, kernel_frame *f, vodr_error *error)
@@ -510,6 +498,14 @@ static reference_status take_tables(frame_memory *m, kernel_frame *f, vodr_error
     size_t count = (size_t)f->blocks.count[0] * (size_t)f->blocks.count[1] * (size_t)f->blocks.count[2];
     TRY_STATUS(take(m, entries * sizeof(float4), f->table.rgba, &piece, error));
     f->table.rgba = piece;
+    if (f->filter == KERNEL_CUBIC && f->blocks.most) {
+        TRY_STATUS(take(m, count * sizeof(uint16_t), f->blocks.most, &piece, error));
+        f->blocks.most = (const uint16_t *)piece;
+    }
+    if (f->skip == KERNEL_SKIP_CELLS) {
+        TRY_STATUS(take(m, CELL_CODES, f->cells.shows, &piece, error));
+        f->cells.shows = (const uint8_t *)piece;
+    }
     if (f->skip == KERNEL_SKIP_NONE)
         return REFERENCE_OK;
     TRY_STATUS(take(m, count, f->blocks.distance, &piece, error));
@@ -517,9 +513,17 @@ static reference_status take_tables(frame_memory *m, kernel_frame *f, vodr_error
     return REFERENCE_OK;
 }
 
-static reference_status take_volume(cuda_state *s, kernel_mode mode, kernel_frame *f, reference_stats *stats,
-                                    vodr_error *error)
+static reference_status take_volume(cuda_state *s, frame_memory *m, kernel_mode mode, kernel_frame *f,
+                                    reference_stats *stats, vodr_error *error)
 {
+    if (f->filter == KERNEL_CUBIC) {
+        reference_volume v;
+        TRY_STATUS(need_cubic(s, m, f->volume.spline, &v, stats, error));
+        f->volume.type = v.type;
+        f->volume.voxels = v.voxels;
+        f->cells.codes = s->cubic[f->volume.spline].codes;
+        return REFERENCE_OK;
+    }
     TRY_STATUS(f->filter == KERNEL_TEXTURE ? need_texture(s, error) : need_linear(s, error));
     if (f->filter == KERNEL_LINEAR && mode != KERNEL_SEARCH) { /* which reads too little for cells to be packed */
         TRY_STATUS(want_cells(s, stats, error));
@@ -537,7 +541,7 @@ static reference_status draw_march(cuda_state *s, frame_memory *m, const device_
     kernel_frame f = job->frame;
     void *out, *counts;
     size_t pixels = (size_t)f.camera.width_px * (size_t)f.camera.height_px;
-    TRY_STATUS(take_volume(s, job->mode, &f, stats, error));
+    TRY_STATUS(take_volume(s, m, job->mode, &f, stats, error));
     TRY_STATUS(take_bounds(s, job->mode, &f, stats, error));
     TRY_STATUS(check_room(pixels * (sizeof *host + sizeof(uint32_t)), "the frame", error));
     TRY_STATUS(take_tables(m, &f, error));
@@ -578,7 +582,7 @@ static reference_status cuda_march(void *state, const device_march *job, double 
     return status;
 }
 
-static const device_ops ops = {cuda_open, cuda_close, cuda_fixed, cuda_march};
+static const device_ops ops = {cuda_open, cuda_close, cuda_fixed, cuda_march, cuda_ranges};
 
 const device_ops *device_cuda(void)
 {

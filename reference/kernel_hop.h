@@ -57,8 +57,9 @@ KERNEL int32_t bundle_stays(const kernel_blocks *b, const bundle *all, const REA
     return (int32_t)least;
 }
 
-/* What march_skip() does, for all rays of the packet by the place of their bundle. */
-KERNEL void march_hop(const kernel_frame *f, const bundle *all, const packet *rays, progress *s)
+/* What march_skip() does, for all rays of the packet by the place of their bundle. `nearby`: samples taken between two
+ * looks where no block in reach shows anything, but cannot be left. */
+KERNEL void march_hop(const kernel_frame *f, const bundle *all, const packet *rays, int32_t nearby, progress *s)
 {
     const kernel_blocks *b = &f->blocks;
     while (any_lane(s->live)) {
@@ -73,7 +74,8 @@ KERNEL void march_hop(const kernel_frame *f, const bundle *all, const packet *ra
         const int32_t distance = b->distance[block];
         int32_t stays = distance > 0 ? bundle_stays(b, all, place, at, distance) : 0;
         if (stays == 0) {
-            s->end = all->most - s->n > HOP_RUN ? s->n + HOP_RUN : all->most;
+            const int32_t run = distance > 0 ? nearby : HOP_RUN;
+            s->end = all->most - s->n > run ? s->n + run : all->most;
             return;
         }
         s->n += stays;

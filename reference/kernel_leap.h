@@ -69,14 +69,19 @@ KERNEL whole leap_bisect(const kernel_blocks *b, const leap_rays *rays, whole n,
     return inside;
 }
 
-/* Takes sample n of the lanes `on`. */
+/* Takes sample n of the lanes `on`; of KERNEL_CUBIC, where its cell can raise the ray. */
 KERNEL void leap_sample(const kernel_frame *f, const packet *rays, kernel_filter filter, reference_voxel type, whole n,
                         mask on, real *greatest, packet_result *out)
 {
     real p[3];
     for (int a = 0; a < 3; a++)
         p[a] = rays->start[a] + to_real(n) * rays->step[a];
-    real value = sample(&f->volume, type, filter, p);
+    if (filter == KERNEL_CUBIC && f->cells.step > 0) {
+        on = on & cubic_raises(f, p, *greatest);
+        if (!any_lane(on))
+            return;
+    }
+    real value = sample_on(&f->volume, type, filter, p, on);
     *greatest = pick(on, larger(value, *greatest), *greatest);
     out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
 }

@@ -50,7 +50,7 @@ KERNEL void march_over(const kernel_frame *f, const march_lane *lane, const look
     if (mode == KERNEL_LIT) {
         if (!any_lane(seen))
             return;
-        sample_gradient(f, type, filter, p, gradient);
+        sample_gradient(f, type, filter, p, seen, gradient);
         out->samples = out->samples + pick_whole(seen, spread_whole(6), spread_whole(0));
         real magnitude = root(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
         if (by_gradient)
@@ -80,24 +80,34 @@ KERNEL void march_ask(const kernel_frame *f, const packet *rays, const bundle *a
     fetch_ahead(&f->volume, type, place);
 }
 
-/* Takes the samples n to n + batch - 1 of the live lanes; without `all`, only those before `end`. The volume is read
- * for all of them before the first is used, so that a card has several reads under way. With `ends`, opaque rays end.
- */
+/* Takes the samples n to n + batch - 1 of the live lanes; without `all`, only those before `end`; of KERNEL_CUBIC, only
+ * those that may show something. The volume is read for all of them before the first is
+ * used, so that a card has several reads under way. With `ends`, opaque rays end. */
 KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
-                        kernel_mode mode, kernel_filter filter, reference_voxel type, int batch, bool all, bool ends,
-                        progress *s, packet_result *out)
+                        kernel_mode mode, kernel_filter filter, kernel_skip skip, reference_voxel type, int batch,
+                        bool all, bool ends, progress *s, packet_result *out)
 {
     real p[MAX_BATCH][3], value[MAX_BATCH];
+    mask shows[MAX_BATCH];
+    const bool looks = filter == KERNEL_CUBIC && (skip == KERNEL_SKIP_CELLS || (LANES > 1 && skip != KERNEL_SKIP_NONE));
     const real last = to_real(LANES > 1 ? rays->count - 1 : spread_whole(s->end - 1));
     for (int k = 0; k < batch; k++) {
         real at = spread((REAL)s->n + (REAL)k);
         if (LANES > 1 || !all)
             at = pick(at > last, last, at);
         place_of(rays, at, p[k]);
-        value[k] = sample(&f->volume, type, filter, p[k]);
+        shows[k] = s->live;
+        if (looks) {
+            shows[k] = shows[k] & place_shows(f, skip, p[k]);
+            if (!any_lane(shows[k]))
+                continue;
+        }
+        value[k] = sample_on(&f->volume, type, filter, p[k], shows[k]);
     }
     for (int k = 0; k < batch; k++) {
-        mask on = all ? s->live : s->live & (s->n + k < s->end);
+        mask on = all ? shows[k] : shows[k] & (s->n + k < s->end);
+        if (looks && !any_lane(on))
+            continue;
         out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
         if (mode == KERNEL_MIP) {
             real most = larger(value[k], s->greatest);
@@ -112,10 +122,10 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
 
 /* Takes the samples before `end`. On the CPU rays end one by one. */
 KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const lookup *entries, const packet *rays,
-                      kernel_mode mode, kernel_filter filter, reference_voxel type, const bundle *all, progress *s,
-                      packet_result *out)
+                      kernel_mode mode, kernel_filter filter, kernel_skip skip, reference_voxel type, const bundle *all,
+                      progress *s, packet_result *out)
 {
-    const int batch = mode == KERNEL_LIT ? 1 : MAX_BATCH;
+    const int batch = mode == KERNEL_LIT || filter == KERNEL_CUBIC ? 1 : MAX_BATCH;
     if (LANES > 1) {
         const bool asks = filter == KERNEL_CELLS;
         if (asks) {
@@ -126,7 +136,7 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
         while (s->n < s->end && any_lane(s->live)) {
             if (asks)
                 march_ask(f, rays, all, mode, type, s->n + AHEAD);
-            march_batch(f, lane, entries, rays, mode, filter, type, 1, true, true, s, out);
+            march_batch(f, lane, entries, rays, mode, filter, skip, type, 1, true, true, s, out);
             s->n++;
             s->live = s->live & (s->n < rays->count);
         }
@@ -135,12 +145,12 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
     }
     if (mode == KERNEL_MIP || f->termination > 1)
         for (; s->n + batch <= s->end; s->n = s->n + batch)
-            march_batch(f, lane, entries, rays, mode, filter, type, batch, true, false, s, out);
+            march_batch(f, lane, entries, rays, mode, filter, skip, type, batch, true, false, s, out);
     else
         for (; any_lane(s->live & (s->n + batch <= s->end)); s->n = s->n + batch)
-            march_batch(f, lane, entries, rays, mode, filter, type, batch, true, true, s, out);
+            march_batch(f, lane, entries, rays, mode, filter, skip, type, batch, true, true, s, out);
     if (batch > 1 && any_lane(s->live & (s->n < s->end)))
-        march_batch(f, lane, entries, rays, mode, filter, type, batch, false, true, s, out);
+        march_batch(f, lane, entries, rays, mode, filter, skip, type, batch, false, true, s, out);
     s->n = s->end;
     s->live = s->live & (s->n < rays->count);
 }
@@ -162,7 +172,7 @@ KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const p
 {
     packet_result out = {{spread(0), spread(0), spread(0), spread(0)}, spread_whole(0)};
     const march_lane lane = march_prepare(f, rays);
-    const bool hops = LANES > 1 && filter == KERNEL_CELLS && skip != KERNEL_SKIP_NONE;
+    const bool hops = LANES > 1 && (filter == KERNEL_CELLS || filter == KERNEL_CUBIC) && skip != KERNEL_SKIP_NONE;
     bundle all;
     if (LANES > 1)
         all = bundle_of(rays, spread_whole(0), place_shift(filter));
@@ -171,11 +181,11 @@ KERNEL packet_result march(const kernel_frame *f, const lookup *entries, const p
     progress s = {0, skip == KERNEL_SKIP_NONE ? all.most : 0, 0, spread(MARCH_LOWEST), 0 < rays->count};
     while (any_lane(s.live)) {
         if (hops)
-            march_hop(f, &all, rays, &s);
+            march_hop(f, &all, rays, filter == KERNEL_CUBIC ? 1 : HOP_RUN, &s);
         else if (skip != KERNEL_SKIP_NONE)
             march_skip(f, &lane, rays, filter, &s);
         if (any_lane(s.live))
-            march_run(f, &lane, entries, rays, mode, filter, type, &all, &s, &out);
+            march_run(f, &lane, entries, rays, mode, filter, skip, type, &all, &s, &out);
     }
     if (mode == KERNEL_MIP)
         march_greatest(f, entries, s.greatest, &out);

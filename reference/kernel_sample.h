@@ -1,23 +1,16 @@
 /* kernel_sample.h - the volume at positions in between its voxels: the value, and its gradient.
  *
- * A filter has its own places: positions in voxels, but for KERNEL_LINEAR and KERNEL_CELLS, where they are half a voxel
- * more, so that the whole part is the cell. */
+ * A filter has its own places: positions in voxels, but for KERNEL_LINEAR, KERNEL_CELLS and KERNEL_CUBIC, where they
+ * are half a voxel more, so that the whole part is the cell. */
 #ifndef REFERENCE_KERNEL_SAMPLE_H
 #define REFERENCE_KERNEL_SAMPLE_H
 
-#include "kernel_types.h"
-#include "lanes.h"
+#include "kernel_cubic.h"
 
 /* What a filter's places are more than positions in voxels. */
 KERNEL REAL place_shift(kernel_filter filter)
 {
-    return filter == KERNEL_LINEAR || filter == KERNEL_CELLS ? (REAL)0.5 : 0;
-}
-
-KERNEL whole clamp_whole(whole i, int32_t least, int32_t most)
-{
-    i = pick_whole(i < least, spread_whole(least), i);
-    return pick_whole(i > most, spread_whole(most), i);
+    return filter == KERNEL_LINEAR || filter == KERNEL_CELLS || filter == KERNEL_CUBIC ? (REAL)0.5 : 0;
 }
 
 KERNEL real clamp_real(real x, REAL least, REAL most)
@@ -75,9 +68,11 @@ KERNEL real sample_nearest(const kernel_volume *v, reference_voxel type, const r
     return fetch(v, type, index);
 }
 
-/* The stored value at a place of the filter. */
-KERNEL real sample(const kernel_volume *v, reference_voxel type, kernel_filter filter, const real p[3])
+/* The stored value at a place of the filter; what lanes get that are not `on` means nothing. */
+KERNEL real sample_on(const kernel_volume *v, reference_voxel type, kernel_filter filter, const real p[3], mask on)
 {
+    if (filter == KERNEL_CUBIC)
+        return sample_cubic(v, type, p, on);
     if (filter == KERNEL_NEAREST)
         return sample_nearest(v, type, p);
     if (filter == KERNEL_CELLS) {
@@ -95,9 +90,15 @@ KERNEL real sample(const kernel_volume *v, reference_voxel type, kernel_filter f
 #endif
 }
 
-/* Central differences over two voxels along each axis, in stored values a finest voxel. On a card the loop stays one,
- * as what is in it is large; on the CPU the six places share most of what is computed of them. */
-KERNEL void sample_gradient(const kernel_frame *f, reference_voxel type, kernel_filter filter, const real p[3],
+/* The same of all lanes. */
+KERNEL real sample(const kernel_volume *v, reference_voxel type, kernel_filter filter, const real p[3])
+{
+    return sample_on(v, type, filter, p, spread_whole(0) == 0);
+}
+
+/* Central differences over two voxels along each axis, in stored values a finest voxel, of the lanes `on`. On a card
+ * the loop stays one, as what is in it is large; on the CPU the six places share most of what is computed of them. */
+KERNEL void sample_gradient(const kernel_frame *f, reference_voxel type, kernel_filter filter, const real p[3], mask on,
                             real gradient[3])
 {
     const REAL shift = place_shift(filter);
@@ -113,7 +114,7 @@ KERNEL void sample_gradient(const kernel_frame *f, reference_voxel type, kernel_
             const int a = n / 2, side = n % 2 ? 1 : -1;
             const real at[3] = {place[0][a == 0 ? side + 1 : 1], place[1][a == 1 ? side + 1 : 1],
                                 place[2][a == 2 ? side + 1 : 1]};
-            real value = sample(&f->volume, type, filter, at);
+            real value = sample_on(&f->volume, type, filter, at, on);
             gradient[a] = gradient[a] + value * ((REAL)side * (REAL)(0.5 / f->camera.spacing_vox[a]));
         }
         return;
@@ -124,7 +125,7 @@ KERNEL void sample_gradient(const kernel_frame *f, reference_voxel type, kernel_
         real at[3];
         for (int a = 0; a < 3; a++)
             at[a] = clamp_real(p[a] + (n % 3 == a ? side : 0), shift, (REAL)f->volume.dims_vox[a] + shift);
-        real value = sample(&f->volume, type, filter, at);
+        real value = sample_on(&f->volume, type, filter, at, on);
         for (int a = 0; a < 3; a++)
             gradient[a] = gradient[a] + value * (n % 3 == a ? side * (REAL)(0.5 / f->camera.spacing_vox[a]) : 0);
     }

@@ -170,7 +170,7 @@ KERNEL void search_take(const kernel_frame *f, const packet *rays, kernel_filter
         search_place(rays, s, chunk, top, p);
         for (int a = 0; a < 3 && LANES > 1; a++) /* off the volume's sides, where sampling is slower */
             p[a] = pick(on, p[a], spread(1));
-        const real value = sample(&f->volume, type, filter, p);
+        const real value = sample_on(&f->volume, type, filter, p, on);
         s->greatest = pick(on, larger(value, s->greatest), s->greatest);
         out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
         UNROLLED

@@ -47,6 +47,15 @@ KERNEL whole block_of(const kernel_blocks *b, REAL shift, const real p[3], whole
     return (at[2] * b->count[1] + at[1]) * b->count[0] + at[0];
 }
 
+/* Whether samples of KERNEL_CUBIC at places may show something: what is passed over goes by blocks, or by cells. */
+KERNEL mask place_shows(const kernel_frame *f, kernel_skip skip, const real p[3])
+{
+    whole at[3];
+    if (skip == KERNEL_SKIP_CELLS)
+        return cubic_shows(f, p);
+    return fetch_byte(f->blocks.distance, block_of(&f->blocks, place_shift(KERNEL_CUBIC), p, at)) == 0;
+}
+
 /* How many samples on, at least one, the first lies that may be outside the blocks less than `distance` from block
  * `at`. The region is taken smaller by far more than positions are rounded by. */
 KERNEL whole samples_to_leave(const kernel_blocks *b, REAL shift, const march_lane *lane, const real p[3],

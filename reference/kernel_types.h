@@ -10,6 +10,7 @@ typedef enum kernel_filter {
     KERNEL_LINEAR,  /* from the voxels as they are */
     KERNEL_CELLS,   /* the same filter, from packed cells */
     KERNEL_TEXTURE, /* weights of 8 fraction bits */
+    KERNEL_CUBIC,   /* of 64 voxels: kernel_cubic.h */
     KERNEL_FILTERS,
 } kernel_filter;
 
@@ -23,8 +24,9 @@ typedef enum kernel_mode {
     KERNEL_MODES
 } kernel_mode;
 
-/* Whether blocks with nothing to show are passed over, in KERNEL_OVER and KERNEL_LIT. */
-typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIPS } kernel_skip;
+/* Whether blocks with nothing to show are passed over, in KERNEL_OVER and KERNEL_LIT; with KERNEL_SKIP_CELLS, of
+ * KERNEL_CUBIC, cells too. */
+typedef enum kernel_skip { KERNEL_SKIP_NONE, KERNEL_SKIP_EMPTY, KERNEL_SKIP_CELLS, KERNEL_SKIPS } kernel_skip;
 
 /* One pixel's ray, clipped to the volume, or to a box of it: sample n of `count` lies at start + (n + skipped)*step, in
  * voxels of the whole volume. */
@@ -49,6 +51,7 @@ typedef struct kernel_volume {
     const void *voxels;
     const void *cells;          /* the voxels around each cell, together: as lanes_*.h of the device reads them */
     unsigned long long texture; /* CUDA: the same voxels as a texture object; normalised where they are integers */
+    bool spline;                /* KERNEL_CUBIC: voxels are coefficients of B-splines, not values of cardinal ones */
 } kernel_volume;
 
 /* Blocks of `edge` cells. distance[b]: 0, the block is to be sampled; D, no block closer than D, diagonals counting 1,
@@ -59,6 +62,17 @@ typedef struct kernel_blocks {
     const uint16_t *most;    /* KERNEL_LEAP: a code of the greatest value that a sample in the block can have */
     bool bisects, seeds;     /* KERNEL_LEAP: blocks are left by bisection; the middle sample comes first */
 } kernel_blocks;
+
+/* What samples of KERNEL_CUBIC can be in each cell, as codes of 8 bits: the least below, the greatest above.
+ * KERNEL_SKIP_CELLS: shows[code] says whether the cell is to be sampled. KERNEL_LEAP: the greatest is at most code*step
+ * + base; with a step of 0 cells are not looked at. */
+typedef struct kernel_cells {
+    const uint16_t *codes;
+    const uint8_t *shows;
+    double step, base;
+} kernel_cells;
+
+enum { CELL_CODES = 1 << 16 };
 
 /* What samples can be at most, as codes that rise with it: grid 0 has the code of each cell; entry (i, j, l) of grid k
  * that of a window of four times 2^k cells a side, which begins at cell (i, j, l)*2^k. The last grid has one entry. On
@@ -88,6 +102,7 @@ typedef struct kernel_frame {
     kernel_volume volume;
     kernel_part part;
     kernel_blocks blocks;
+    kernel_cells cells;
     kernel_bounds bounds; /* KERNEL_SEARCH; of KERNEL_LEAP only what a code stands for */
     kernel_table table;
     kernel_filter filter;

@@ -16,6 +16,13 @@
 #define HOST_AND_KERNEL static inline
 #endif
 
+/* Of a function with so much in it that the CPU calls it, vectors in memory. */
+#ifdef __CUDACC__
+#define APART KERNEL
+#else
+#define APART static __attribute__((noinline))
+#endif
+
 /* Before a loop that is not to be unrolled. */
 #ifdef __clang__
 #define ROLLED _Pragma("clang loop unroll(disable)")

@@ -18,11 +18,24 @@ enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MOST_SAMPLES = 1 << 24 };
 /* A gradient of the whole window over this many finest voxels makes a whole surface. */
 static const double surface_vox = 1024;
 
+/* What ranges of blocks are made of. */
+typedef struct blocks_kind {
+    reference_filter filter; /* a cubic, or what stands for the others */
+    int32_t edge_vox;
+    hull_bound bound;
+    bool cells;
+} blocks_kind;
+
 struct reference {
     const device_ops *ops;
     void *state;
     reference_volume volume;
-    blocks blocks; /* of the last edge asked for */
+    blocks blocks;    /* the last asked for */
+    blocks_kind kind; /* what they are of */
+    hull_scale scale; /* of blocks of a cubic */
+    void *shown;      /* owned; of the last frame: what shows of cells, or codes of blocks */
+    float largest;    /* magnitude of a float, once a cubic needs it */
+    bool has_largest;
     char name[DEVICE_NAME_CHARS];
 };
 
@@ -83,6 +96,7 @@ void reference_close(reference *r)
         return;
     r->ops->close(r->state);
     blocks_free(&r->blocks);
+    free(r->shown);
     free(r);
 }
 
@@ -233,8 +247,14 @@ static reference_status check_march(const reference *r, const reference_march_jo
     if (job->block_vox < 2 || job->block_vox > VODR_MAX_DIM_VOX)
         return reference_fail(error, REFERENCE_INVALID, "a block has %d voxels a side, must have 2 to %d",
                               job->block_vox, VODR_MAX_DIM_VOX);
-    if (!reference_accel_suits(job->accel, job->blend))
-        return reference_fail(error, REFERENCE_INVALID, "bisection and seeds are of the maximum, not of over");
+    if (!reference_accel_suits(job->accel, job->blend, job->filter))
+        return reference_fail(
+            error, REFERENCE_INVALID,
+            "bisection and seeds are of the maximum of nearest and linear samples, hulls and rivals of "
+            "cubic ones");
+    if (reference_is_cubic(job->filter) && job->numbers == REFERENCE_TEXTURE)
+        return reference_fail(error, REFERENCE_INVALID,
+                              "a texture unit's weights are of nearest and linear, not of cubics");
     if (job->camera.most > MOST_SAMPLES)
         return reference_fail(error, REFERENCE_INVALID, "a ray has %lld samples, must have at most %d",
                               (long long)job->camera.most, MOST_SAMPLES);
@@ -248,9 +268,28 @@ static reference_status check_part(const reference *r, const reference_march_job
     reference_status status = part_of(&r->volume, job, part, error);
     const bool leaps =
         job->blend == REFERENCE_MIP && job->accel != REFERENCE_ACCEL_NONE && job->accel != REFERENCE_ACCEL_BEST;
+    if (status == REFERENCE_OK && reference_is_cubic(job->filter) && !part_is_whole(part, r->volume.dims_vox))
+        return reference_fail(error, REFERENCE_INVALID, "of a part there is no cubic filter");
     if (status == REFERENCE_OK && leaps && !part_is_whole(part, r->volume.dims_vox))
         return reference_fail(error, REFERENCE_INVALID, "of a part, mip has no accel but none and best");
     return status;
+}
+
+/* Sums of 64 voxels, and bounds of them, must be finite: floats are looked through once. */
+static reference_status check_cubic(reference *r, vodr_error *error)
+{
+    static const float most = 1e36F;
+    const float *values = r->volume.voxels;
+    const int32_t *dims = r->volume.dims_vox;
+    const size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
+    for (size_t i = 0; r->volume.type == REFERENCE_FLOAT32 && !r->has_largest && i < count; i++)
+        r->largest = fmaxf(r->largest, fabsf(values[i]));
+    r->has_largest = true;
+    if (r->largest <= most)
+        return REFERENCE_OK;
+    return reference_fail(error, REFERENCE_INVALID,
+                          "the volume has a voxel of magnitude %g, must have at most %g for a cubic filter",
+                          (double)r->largest, (double)most);
 }
 
 /* The table in the numbers it is used in, with copies of its last entries behind (kernel_types.h). */
@@ -293,16 +332,110 @@ static void find_visible(const reference_table *t, double *first, double *last)
     *last = hi == t->columns - 1 ? 1e30 : hi + 1;
 }
 
-static reference_status need_blocks(reference *r, int32_t edge_vox, reference_stats *stats, vodr_error *error)
+/* ---- what is passed over ---- */
+
+enum { CUBIC_BLOCK_VOX = 8 }; /* of best */
+
+/* What the blocks of a job are made of. */
+static blocks_kind kind_of(const reference *r, const reference_march_job *job)
 {
-    if (r->blocks.edge_vox == edge_vox)
+    const int32_t *dims = r->volume.dims_vox;
+    const bool cubic = reference_is_cubic(job->filter), best = job->accel == REFERENCE_ACCEL_BEST;
+    const int64_t cells = ((int64_t)dims[0] + 1) * (dims[1] + 1) * (dims[2] + 1);
+    return (blocks_kind){
+        .filter = cubic ? job->filter : REFERENCE_LINEAR,
+        .edge_vox = cubic && best ? CUBIC_BLOCK_VOX : job->block_vox,
+        .bound = job->accel == REFERENCE_ACCEL_RIVAL    ? HULL_RIVAL
+                 : job->accel == REFERENCE_ACCEL_UNSAFE ? HULL_UNSAFE
+                                                        : HULL_BEZIER,
+        .cells = cubic && best && cells <= INT32_MAX,
+    };
+}
+
+static reference_status need_ranges(reference *r, blocks_kind k, reference_stats *stats, vodr_error *error)
+{
+    reference_status status = blocks_alloc(&r->volume, k.edge_vox, &r->blocks, error);
+    if (status != REFERENCE_OK)
+        return status;
+    blocks *b = &r->blocks;
+    const device_ranges ranges = {.spline = k.filter == REFERENCE_BSPLINE,
+                                  .cells = k.cells,
+                                  .bound = k.bound,
+                                  .edge_vox = k.edge_vox,
+                                  .count = {b->count[0], b->count[1], b->count[2]},
+                                  .least = b->least,
+                                  .most = b->most,
+                                  .scale = &r->scale};
+    return r->ops->ranges(r->state, &ranges, stats, error);
+}
+
+static reference_status need_blocks(reference *r, const reference_march_job *job, reference_stats *stats,
+                                    vodr_error *error)
+{
+    const blocks_kind k = kind_of(r, job);
+    const blocks_kind *had = &r->kind;
+    reference_status status;
+    if (r->blocks.least && had->filter == k.filter && had->edge_vox == k.edge_vox && had->bound == k.bound &&
+        (had->cells || !k.cells))
         return REFERENCE_OK;
-    double begin_ms = now_ms();
     blocks_free(&r->blocks);
-    reference_status status = blocks_make(&r->volume, edge_vox, &r->blocks, error);
-    stats->preprocess_ms = now_ms() - begin_ms;
+    r->kind = k;
+    if (reference_is_cubic(k.filter)) {
+        status = need_ranges(r, k, stats, error);
+    } else {
+        const double begin_ms = now_ms();
+        status = blocks_make(&r->volume, k.edge_vox, &r->blocks, error);
+        stats->preprocess_ms += now_ms() - begin_ms;
+    }
+    if (status != REFERENCE_OK)
+        blocks_free(&r->blocks);
     return status;
 }
+
+/* Whether a job needs blocks from here: those of a maximum of linear samples are the device's own. */
+static bool has_blocks(const reference_march_job *job)
+{
+    return job->accel != REFERENCE_ACCEL_NONE && (job->blend != REFERENCE_MIP || reference_is_cubic(job->filter));
+}
+
+/* What a transfer function, or a maximum, makes of the blocks of a job. r->shown has room for the codes of both. */
+static reference_status classify_blocks(reference *r, const reference_march_job *job, kernel_frame *f,
+                                        vodr_error *error)
+{
+    const blocks_kind k = r->kind;
+    blocks *b = &r->blocks;
+    f->blocks.edge_vox = b->edge_vox;
+    memcpy(f->blocks.count, b->count, sizeof b->count);
+    if (job->blend == REFERENCE_MIP) {
+        free(r->shown);
+        r->shown = malloc(blocks_count(b) * sizeof(uint16_t));
+        if (!r->shown)
+            return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu blocks", blocks_count(b));
+        blocks_encode(b, r->scale, r->shown, &f->bounds);
+        f->blocks.most = r->shown;
+        f->blocks.seeds = job->accel == REFERENCE_ACCEL_BEST;
+        if (k.cells && job->accel == REFERENCE_ACCEL_BEST) {
+            f->cells.step = 1 / (double)r->scale.inverse;
+            f->cells.base = hull_greatest(r->scale, 0);
+        }
+        return REFERENCE_OK;
+    }
+    reference_status status = blocks_classify(b, &job->table, job->window_scale, job->window_offset,
+                                              job->accel == REFERENCE_ACCEL_BEST, error);
+    f->blocks.distance = b->distance;
+    f->skip = KERNEL_SKIP_EMPTY;
+    if (status != REFERENCE_OK || job->accel != REFERENCE_ACCEL_BEST || !k.cells)
+        return status;
+    free(r->shown);
+    r->shown = malloc(CELL_CODES);
+    if (!r->shown)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the codes of cells");
+    f->skip = KERNEL_SKIP_CELLS;
+    f->cells.shows = r->shown;
+    return blocks_classify_cells(r->scale, &job->table, job->window_scale, job->window_offset, r->shown, error);
+}
+
+/* ---- a frame ---- */
 
 static kernel_table table_of(const reference_march_job *job, const void *rgba)
 {
@@ -317,9 +450,22 @@ static kernel_table table_of(const reference_march_job *job, const void *rgba)
     return k;
 }
 
-bool reference_accel_suits(reference_accel accel, reference_blend blend)
+bool reference_is_cubic(reference_filter filter)
 {
-    return blend == REFERENCE_MIP || (accel != REFERENCE_ACCEL_BISECT && accel != REFERENCE_ACCEL_SEED);
+    return filter == REFERENCE_CARDINAL || filter == REFERENCE_BSPLINE;
+}
+
+bool reference_accel_suits(reference_accel accel, reference_blend blend, reference_filter filter)
+{
+    switch (accel) {
+    case REFERENCE_ACCEL_BLOCK: return !reference_is_cubic(filter);
+    case REFERENCE_ACCEL_BISECT:
+    case REFERENCE_ACCEL_SEED: return !reference_is_cubic(filter) && blend == REFERENCE_MIP;
+    case REFERENCE_ACCEL_RIVAL:
+    case REFERENCE_ACCEL_HULL: return reference_is_cubic(filter);
+    case REFERENCE_ACCEL_UNSAFE: return filter == REFERENCE_CARDINAL;
+    default: return true;
+    }
 }
 
 static kernel_mode mode_of(const reference *r, const reference_march_job *job, const kernel_part *part)
@@ -327,7 +473,7 @@ static kernel_mode mode_of(const reference *r, const reference_march_job *job, c
     kernel_bounds bounds;
     if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_NONE)
         return KERNEL_MIP;
-    if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_BEST &&
+    if (job->blend == REFERENCE_MIP && job->accel == REFERENCE_ACCEL_BEST && !reference_is_cubic(job->filter) &&
         bounds_shape(r->volume.dims_vox, true, &bounds) > 0)
         return KERNEL_SEARCH;
     if (job->blend == REFERENCE_MIP)
@@ -339,13 +485,15 @@ static kernel_filter filter_of(const reference_march_job *job)
 {
     if (job->filter == REFERENCE_NEAREST)
         return KERNEL_NEAREST;
+    if (reference_is_cubic(job->filter))
+        return KERNEL_CUBIC;
     return job->numbers == REFERENCE_TEXTURE ? KERNEL_TEXTURE : KERNEL_LINEAR;
 }
 
+/* The blocks that a device makes itself. */
 static kernel_blocks blocks_of(const reference *r, const reference_march_job *job)
 {
     kernel_blocks b = {.edge_vox = job->block_vox,
-                       .distance = r->blocks.distance,
                        .bisects = job->accel >= REFERENCE_ACCEL_BISECT,
                        .seeds = job->accel >= REFERENCE_ACCEL_SEED};
     for (int a = 0; a < 3; a++)
@@ -361,26 +509,23 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
     reference_status status = check_march(r, job, error);
     if (status == REFERENCE_OK)
         status = check_part(r, job, &part, error);
-    const bool skips = job->accel != REFERENCE_ACCEL_NONE && job->blend != REFERENCE_MIP;
-    if (status == REFERENCE_OK && skips)
-        status = need_blocks(r, job->block_vox, stats, error);
+    if (status == REFERENCE_OK && reference_is_cubic(job->filter))
+        status = check_cubic(r, error);
+    if (status == REFERENCE_OK && has_blocks(job))
+        status = need_blocks(r, job, stats, error);
     if (status != REFERENCE_OK)
         return status;
-    double begin_ms = now_ms();
-    if (skips)
-        status = blocks_classify(&r->blocks, &job->table, job->window_scale, job->window_offset,
-                                 job->accel == REFERENCE_ACCEL_BEST, error);
-    if (status != REFERENCE_OK)
-        return status;
+    const double begin_ms = now_ms();
     void *table = convert_table(job);
     if (!table)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
     device_march m = {.frame = {.camera = job->camera,
-                                .volume = {.type = r->volume.type, .voxels = r->volume.voxels},
+                                .volume = {.type = r->volume.type,
+                                           .voxels = r->volume.voxels,
+                                           .spline = job->filter == REFERENCE_BSPLINE},
                                 .part = part,
                                 .table = table_of(job, table),
                                 .filter = filter_of(job),
-                                .skip = skips ? KERNEL_SKIP_EMPTY : KERNEL_SKIP_NONE,
                                 .termination = job->termination,
                                 .phong = job->shading == REFERENCE_PHONG,
                                 .stored = job->stored,
@@ -389,8 +534,11 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
                       .mode = mode_of(r, job, &part)};
     memcpy(m.frame.volume.dims_vox, r->volume.dims_vox, sizeof r->volume.dims_vox);
     m.frame.blocks = blocks_of(r, job);
+    if (has_blocks(job))
+        status = classify_blocks(r, job, &m.frame, error);
     stats->prepare_ms = now_ms() - begin_ms;
-    status = r->ops->march(r->state, &m, rgba, stats, error);
+    if (status == REFERENCE_OK)
+        status = r->ops->march(r->state, &m, rgba, stats, error);
     free(table);
     return status;
 }

@@ -78,26 +78,41 @@ reference_status reference_fixed(reference *r, const vodr_machine *machine, cons
 typedef enum reference_numbers {
     REFERENCE_FLOAT,
     REFERENCE_DOUBLE,  /* CPU only */
-    REFERENCE_TEXTURE, /* float, but weights have 8 fraction bits as in a card's texture unit, which filters on CUDA */
+    REFERENCE_TEXTURE, /* float, but weights have 8 fraction bits as in a card's texture unit, which filters on CUDA;
+                          not of cubics */
 } reference_numbers;
 
 typedef enum reference_blend { REFERENCE_OVER, REFERENCE_MIP } reference_blend;
-typedef enum reference_filter { REFERENCE_NEAREST, REFERENCE_LINEAR } reference_filter;
+/* The cubics weight 64 voxels: REFERENCE_CARDINAL is the Catmull-Rom spline through the voxels, REFERENCE_BSPLINE the
+ * cubic B-spline through them, of coefficients that are computed once. Beyond the volume voxels, or coefficients, go on
+ * as they are at its border. */
+typedef enum reference_filter {
+    REFERENCE_NEAREST,
+    REFERENCE_LINEAR,
+    REFERENCE_CARDINAL,
+    REFERENCE_BSPLINE,
+} reference_filter;
 typedef enum reference_shading { REFERENCE_UNLIT, REFERENCE_PHONG } reference_shading;
 
-/* How what does not show is passed over; none changes a byte. */
+/* How what does not show is passed over; none changes a byte, but the last. */
 typedef enum reference_accel {
     REFERENCE_ACCEL_NONE,
     REFERENCE_ACCEL_BLOCK,  /* a block that is transparent, or cannot raise the maximum, is left at its far side */
     REFERENCE_ACCEL_BISECT, /* mip: the same, its far side found by bisection */
     REFERENCE_ACCEL_SEED,   /* mip: the same, and the middle sample of the ray comes first */
     REFERENCE_ACCEL_BEST,   /* the fastest there is; over: blocks know how far the nearest visible one is; mip: the
-                               samples of the greatest bounds first */
+                               samples of the greatest bounds first; cubics: cells are passed over too */
+    REFERENCE_ACCEL_RIVAL,  /* cubics: blocks bounded by what the worst voxels between their extremes could give */
+    REFERENCE_ACCEL_HULL,   /* cubics: blocks bounded by their cells' Bezier points */
+    REFERENCE_ACCEL_UNSAFE, /* cubics: the rival's bound with a margin of one axis alone, M + (M - m)/8, which loses
+                               what three axes overshoot: to be seen in tests and measurements */
     REFERENCE_ACCELS,
 } reference_accel;
 
-/* Whether a blend has an accel. */
-bool reference_accel_suits(reference_accel accel, reference_blend blend);
+bool reference_is_cubic(reference_filter filter);
+
+/* Whether a blend of a filter's samples has an accel. */
+bool reference_accel_suits(reference_accel accel, reference_blend blend, reference_filter filter);
 
 /* The rays of a frame. With o = origin[0] + x*origin[1] + y*origin[2] and d likewise, sample j, 0 the nearest, lies at
  * o + (first + j*spacing)*d, in voxels. */

@@ -65,7 +65,8 @@ _vodr_value() {
         *) _vodr_axes "$1" "$2" | sed -e '/./!d' -e 's/$/=/' ;;
         esac
         ;;
-    --blend | --filter | --traversal) _vodr_values "$1" "${3#--}" ;;
+    --blend | --traversal) _vodr_values "$1" "${3#--}" ;;
+    --filter) if [ "$2" = reference ]; then _vodr_words "$1" "$2" "$3"; else _vodr_values "$1" filter; fi ;;
     --tf)
         _vodr_words "$1" "$2" "$3"
         compgen -f -- "$4"

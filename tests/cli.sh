@@ -178,7 +178,34 @@ expect "machine list has paper-32" '^paper-32 ' ../out
     bad 2 "--device 'gpu': must be cpu or cuda" "$vodr" reference $raw -o no.png --device gpu
     bad 2 "--method 'rays': must be slices or raycast" "$vodr" reference $raw -o no.png --method rays
     bad 2 "--numbers 'half': must be fixed, float, double or texture" "$vodr" reference $raw -o no.png --numbers half
-    bad 2 "--accel 'hull': must be none, block, bisect, seed or best" "$vodr" reference $raw -o no.png --accel hull
+    bad 2 "--accel 'bezier': must be none, block, bisect, seed, best, rival or hull" "$vodr" reference $raw -o no.png \
+        --accel bezier
+    bad 2 "--accel hull does not go with filter=linear" "$vodr" reference $raw -o no.png --accel hull
+    bad 2 "--filter 'cubic': must be nearest, linear, cardinal or bspline" "$vodr" reference $raw -o no.png --filter cubic
+    bad 2 "--filter cardinal does not go with --numbers fixed" "$vodr" reference $raw -o no.png --filter cardinal \
+        --numbers fixed
+    bad 2 "--filter bspline does not go with --numbers texture" "$vodr" reference $raw -o no.png --filter bspline \
+        --numbers texture
+    for how in block 'bisect --blend mip' 'seed --blend mip'; do
+        bad 2 "--accel ${how%% *} does not go with filter=cardinal" "$vodr" reference $raw -o no.png --filter cardinal \
+            --accel $how
+    done
+    for filter in cardinal bspline; do
+        for blend in over mip; do
+            good "reference --filter $filter --blend $blend" "$vodr" reference $raw --filter $filter --blend $blend \
+                --accel none --view 30,20 --raw r.rgba --stats r.json
+            expect "stats: filter" "\"filter\": \"$filter\"" r.json
+            for how in rival hull best 'hull --block 2' 'best --simd portable'; do
+                good "reference --filter $filter --blend $blend --accel $how" "$vodr" reference $raw --filter $filter \
+                    --blend $blend --view 30,20 --accel $how --raw t.rgba
+                same "draws the same bytes" r.rgba t.rgba
+            done
+        done
+    done
+    good "reference --filter nearest" "$vodr" reference $raw --filter nearest --raw r.rgba
+    good "reference --set filter=nearest" "$vodr" reference $raw --set filter=nearest --raw t.rgba
+    same "draws the same bytes" r.rgba t.rgba
+    rm -f r.rgba t.rgba r.json
     bad 2 "--shading 'flat': must be none or phong" "$vodr" reference $raw -o no.png --shading flat
     bad 2 "--step '0': must be" "$vodr" reference $raw -o no.png --method raycast --step 0
     bad 2 "--block '0': must be" "$vodr" reference $raw -o no.png --block 0

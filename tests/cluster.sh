@@ -119,6 +119,7 @@ head -c 27 /dev/zero >small.raw
     bad 2 "--balance 'even': must be static, octree, paper or best" "$vodr" cluster $raw --balance even
     bad 2 "--weight 'size': must be count, samples or time" "$vodr" cluster $raw --weight size
     bad 2 "--composite 'tree': must be direct, binary-swap or radix-k" "$vodr" cluster $raw --composite tree
+    bad 2 "--filter cardinal and bspline draw whole volumes" "$vodr" cluster $raw --filter bspline
     bad 2 "--subvolume '3': must be an integer from 4 to 64" "$vodr" cluster $raw --subvolume 3
     bad 2 "--nodes '1025': must be an integer from 1 to 1024" "$vodr" cluster $raw --nodes 1025
     bad 2 "--network '1': must be" "$vodr" cluster $raw --network 1

@@ -156,7 +156,7 @@ static bool ways_agree(test_case *c, FILE *file)
     double *first = malloc(channels * sizeof *first), *other = malloc(channels * sizeof *other);
     bool same = first && other && draw_way(c, job, &ways[0], first, file);
     for (size_t i = 0; same && i < sizeof ways / sizeof *ways; i++) {
-        if (!reference_accel_suits(ways[i].accel, job.blend))
+        if (!reference_accel_suits(ways[i].accel, job.blend, job.filter))
             continue;
         same = draw_way(c, job, &ways[i], other, file);
         for (size_t n = 0; same && n < channels; n++)

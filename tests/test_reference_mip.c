@@ -96,7 +96,7 @@ static void hold(const scene *s, const int32_t *edges_vox, int count)
     assert_true(draw(r, job, REFERENCE_ACCEL_NONE, 2, none) > 0);
     reference_close(r);
     r = open_scene(s, VODR_SIMD_BEST);
-    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel <= REFERENCE_ACCEL_BEST; accel++)
         for (int e = 0; e < (accel == REFERENCE_ACCEL_BEST ? 1 : count); e++) {
             draw(r, job, (reference_accel)accel, edges_vox[e], other);
             if (memcmp(none, other, channels * sizeof *none) != 0)
@@ -172,7 +172,7 @@ static void test_constant(void **state)
     double *rgba = malloc(4 * pixels * sizeof *rgba);
     assert_non_null(rgba);
     reference *r = open_scene(&s, VODR_SIMD_BEST);
-    for (int accel = 0; accel < REFERENCE_ACCELS; accel++) {
+    for (int accel = 0; accel <= REFERENCE_ACCEL_BEST; accel++) {
         const uint64_t samples = draw(r, job_of(&s), (reference_accel)accel, 8, rgba);
         uint64_t seen = 0;
         for (size_t i = 0; i < pixels; i++) {
@@ -199,7 +199,7 @@ static void test_edges(void **state)
     s.voxels = voxels;
     hold(&s, larger, 3);
     reference *r = open_scene(&s, VODR_SIMD_BEST);
-    for (int accel = 0; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = 0; accel <= REFERENCE_ACCEL_BEST; accel++)
         for (int i = 0; i < 4; i++) {
             reference_march_job job = job_of(&s);
             reference_stats stats;

@@ -137,8 +137,8 @@ static bool accelerate(reference *device, const reference_march_job *job, refere
 {
     reference_stats stats;
     bool good = march(device, *job, numbers, REFERENCE_ACCEL_NONE, a, &stats);
-    for (int accel = REFERENCE_ACCEL_BLOCK; good && accel < REFERENCE_ACCELS; accel++) {
-        if (!reference_accel_suits((reference_accel)accel, job->blend))
+    for (int accel = REFERENCE_ACCEL_BLOCK; good && accel <= REFERENCE_ACCEL_BEST; accel++) {
+        if (!reference_accel_suits((reference_accel)accel, job->blend, job->filter))
             continue;
         good = march(device, *job, numbers, (reference_accel)accel, b, &stats);
         if (good && memcmp(a, b, channels * sizeof *a) != 0) {

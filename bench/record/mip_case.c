@@ -129,7 +129,7 @@ static bool draw_none(const mip_case *c, reference *r, double *none, FILE *file,
 static bool draw_others(const mip_case *c, reference *r, const double *none, double *other, FILE *file, mip_tally *t)
 {
     reference_stats stats;
-    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel <= REFERENCE_ACCEL_BEST; accel++)
         for (int e = 0; e < (accel == REFERENCE_ACCEL_BEST ? 1 : MIP_EDGES); e++) {
             if (!draw(c, r, (reference_accel)accel, c->edges_vox[e], other, &stats, file))
                 return false;

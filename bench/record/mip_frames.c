@@ -49,7 +49,7 @@ static int matrix(const reference_options *options, int cases)
     }
     printf("{\"result\": \"mip_matrix\", \"cases\": %llu, \"frames\": %llu, \"differ\": %llu",
            (unsigned long long)t.cases, (unsigned long long)t.frames, (unsigned long long)t.differ);
-    for (int accel = 0; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = 0; accel <= REFERENCE_ACCEL_BEST; accel++)
         printf(", \"%s_samples\": %llu", mip_accel_name((reference_accel)accel), (unsigned long long)t.samples[accel]);
     printf(", \"sums\": [");
     for (int i = 0; sums && i < (int)t.cases; i++)
@@ -201,12 +201,12 @@ static bool draw_view(const request *q, reference *r, int view, double *pictures
     mip_fill_ramp(table);
     if (!make_job(q, view, table, &job))
         return false;
-    entry entries[REFERENCE_ACCELS] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 2}};
+    entry entries[REFERENCE_ACCEL_BEST + 1] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 2}};
     int32_t longest = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
     longest = longest > q->to[2] ? longest : q->to[2];
-    for (int accel = REFERENCE_ACCEL_BLOCK; accel < REFERENCE_ACCELS; accel++)
+    for (int accel = REFERENCE_ACCEL_BLOCK; accel <= REFERENCE_ACCEL_BEST; accel++)
         entries[accel] = (entry){.accel = (reference_accel)accel, .block_vox = 2};
-    bool good = time_entries(q, r, &job, view, entries, q->figure ? 1 : REFERENCE_ACCELS, pictures);
+    bool good = time_entries(q, r, &job, view, entries, q->figure ? 1 : REFERENCE_ACCEL_BEST + 1, pictures);
     for (int32_t edge = 2; good && q->figure && edge <= longest; edge *= 2) {
         entry seed = {.accel = REFERENCE_ACCEL_SEED, .block_vox = edge};
         good = time_entries(q, r, &job, view, &seed, 1, pictures);
