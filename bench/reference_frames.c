@@ -150,7 +150,8 @@ static bool run(const request *q, const char *volume_path, const char *table_pat
     bool good = voxels && entries && rgba;
     if (good) {
         const reference_options options = {.device = REFERENCE_CPU, .threads = q->threads};
-        const reference_volume v = {{q->side_vox, q->side_vox, q->side_vox}, REFERENCE_UINT8, voxels};
+        const reference_volume v = {
+            .dims_vox = {q->side_vox, q->side_vox, q->side_vox}, .type = REFERENCE_UINT8, .voxels = voxels};
         fill_table(entries, strcmp(q->mode, "mip") == 0, table);
         good = make_job(q, table, &job) && reference_open(&options, &v, &r, &error) == REFERENCE_OK &&
                draw(q, r, &job, rgba);

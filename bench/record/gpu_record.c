@@ -366,7 +366,7 @@ static int times(const reference_options *options, int side, const char *path, c
         make_volume(voxels, side);
     }
     vodr_error error;
-    reference_volume v = {{side, side, side}, REFERENCE_UINT8, voxels};
+    reference_volume v = {.dims_vox = {side, side, side}, .type = REFERENCE_UINT8, .voxels = voxels};
     reference *r = NULL;
     int failed = !say(reference_open(options, &v, &r, &error), "open", &error);
     printf("{\"result\": \"device\", \"name\": \"%s\"}\n", r ? reference_device_name(r) : "none");
@@ -397,7 +397,8 @@ static int times(const reference_options *options, int side, const char *path, c
 /* A volume that no card has room for is refused by figure, before a voxel of it is read. */
 static int refuse(const reference_options *options)
 {
-    const reference_volume v = {{VODR_MAX_DIM_VOX, VODR_MAX_DIM_VOX, VODR_MAX_DIM_VOX}, REFERENCE_UINT8, NULL};
+    const reference_volume v = {.dims_vox = {VODR_MAX_DIM_VOX, VODR_MAX_DIM_VOX, VODR_MAX_DIM_VOX},
+                                .type = REFERENCE_UINT8};
     reference *r = NULL;
     vodr_error error = {{0}};
     reference_status status = reference_open(options, &v, &r, &error);
