@@ -9,7 +9,7 @@
 #include "layout.h"
 #include "views.h"
 
-enum { LARGEST_VOX = 48, LONGEST_VOX = 150, BRICKS_VOX = 12, MOST_EMPTY_BRICKS = 4096 };
+enum { LARGEST_VOX = 48, LONGEST_VOX = 150, BRICKS_VOX = 12, MOST_EMPTY_BRICKS = 4096, MOST_BRICKS = 1 << 20 };
 
 const block_bench *bench_of(vodr_block block)
 {
@@ -69,7 +69,8 @@ static bool draw_volume(bench *b, int32_t longest_vox, bool bricks)
     return v->voxels || !bricks;
 }
 
-/* Whether its bricks have addresses in memory, and numbers among those that a library can leave out. */
+/* Whether its bricks have addresses in memory, numbers among those that a library can leave out, and a walk over all of
+ * them ends in a second. */
 static bool has_room(const bench *b)
 {
     const vodr_machine *m = &b->machine;
@@ -81,7 +82,7 @@ static bool has_room(const bench *b)
         bricks *= ceil_div32(dims[c], edge_vox[c]);
     }
     return bricks <= ((int64_t)1 << 46) / brick_room_bytes(m, edge_vox) &&
-           (!m->skip_empty || bricks <= MOST_EMPTY_BRICKS);
+           bricks <= (m->skip_empty ? MOST_EMPTY_BRICKS : MOST_BRICKS);
 }
 
 /* Sides as large as they can be, of which nobody reads a voxel. */
