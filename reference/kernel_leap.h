@@ -63,7 +63,8 @@ KERNEL whole leap_bisect(const kernel_blocks *b, const leap_rays *rays, whole n,
     ROLLED
     for (int32_t step = longest; step > 0; step /= 2) {
         const whole next = inside + step;
-        const mask stays = (next < count) & (leap_block(b, rays, next, at) == block);
+        const mask on = next < count; /* far beyond its end a ray's blocks have numbers that no integer holds */
+        const mask stays = on & (leap_block(b, rays, pick_whole(on, next, inside), at) == block);
         inside = pick_whole(stays, next, inside);
     }
     return inside;
