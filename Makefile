@@ -16,6 +16,8 @@ STRICT   := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -ffp-contr
 INCLUDES := -I$(BUILD)/gen -Icmodel -Ihost -Ireference -Icluster -Irtl -Ivectors -isystem /usr/include/nifti
 COMPILE   = $(CC) $(STRICT) $(CFLAGS) $(SANITIZE) $(INCLUDES) -pthread -MMD -MP
 REFERENCE_MATHS := -fno-math-errno -fno-trapping-math # lanes take square roots side by side; no result changes
+# Where lanes are loops, without a processor's vectors, -O3 would take most of a build, and is no faster.
+LOOPS    := $(if $(filter -O3,$(CFLAGS)),-O1)
 
 # CUDA is optional: without nvcc the reference renderer draws on the CPU only. NVCC= leaves it out.
 NVCC     ?= $(firstword $(shell command -v nvcc) $(wildcard /usr/local/cuda/bin/nvcc))
@@ -66,7 +68,7 @@ PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
 .PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-mip bench-cardinal bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
 
-all: $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
+all: $(BUILD)/libreference.a $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
 help: ## list the targets
 	@sed -n 's/^\([a-z][a-z-]*\):.*## /\1 - /p' Makefile | sort
@@ -254,6 +256,7 @@ $(BUILD)/libvodr.a: $(CMODEL)
 
 $(BUILD)/cmodel/%.o: override CFLAGS += $(COVER)
 $(BUILD)/reference/%.o: CFLAGS += $(REFERENCE_MATHS)
+$(addprefix $(BUILD)/reference/,cpu_float.o cpu_double.o cpu_cubic_float.o cpu_cubic_double.o): CFLAGS += $(LOOPS)
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/reference/cpu_avx2.o $(BUILD)/reference/cpu_cubic_avx2.o: CFLAGS += -mavx2
 $(BUILD)/reference/cpu_avx512.o $(BUILD)/reference/cpu_cubic_avx512.o: CFLAGS += -mavx512f -mavx512bw -mavx512dq -mavx512vl
