@@ -55,7 +55,7 @@ BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
             host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
 # The same of bench/mip_frames.
-MIP      := bench/record/mip_frames bench/record/mip_case bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
+MIP      := bench/record/mip_frames bench/record/mip_case bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
             tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 # The same of bench/cubic_frames.
 CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch \

@@ -157,63 +157,34 @@ static void set_orientation(const volume_file *f, bool no_orient, volume *v)
     orientation_nearest(f->oriented && !no_orient ? f->direction : none, v->axis, v->sign);
 }
 
-/* Defines a function that finds the least and greatest of n stored voxels. */
-#define DEFINE_RANGE(name, type)                                                                                       \
-    static void name(const void *voxels, size_t n, double *min, double *max)                                           \
-    {                                                                                                                  \
-        const type *stored = voxels;                                                                                   \
-        type lo = stored[0], hi = stored[0];                                                                           \
-        for (size_t i = 1; i < n; i++) {                                                                               \
-            lo = stored[i] < lo ? stored[i] : lo;                                                                      \
-            hi = stored[i] > hi ? stored[i] : hi;                                                                      \
-        }                                                                                                              \
-        *min = lo;                                                                                                     \
-        *max = hi;                                                                                                     \
-    }
-
-DEFINE_RANGE(range_uint8, uint8_t)
-DEFINE_RANGE(range_int8, int8_t)
-DEFINE_RANGE(range_uint16, uint16_t)
-DEFINE_RANGE(range_int16, int16_t)
-DEFINE_RANGE(range_uint32, uint32_t)
-DEFINE_RANGE(range_int32, int32_t)
-
-/* Returns how many voxels are not finite; 0 to 0 is the range when none is. */
-static uint64_t range_float32(const void *voxels, size_t n, double *min, double *max)
+/* Of the finite voxels, which it counts; 0 to 0 when there are none. */
+static void find_range_float32(volume *v)
 {
-    const float *stored = voxels;
+    const float *stored = v->voxels;
+    const size_t n = volume_count(v);
     float lo = INFINITY, hi = -INFINITY;
-    uint64_t finite = 0;
     for (size_t i = 0; i < n; i++) {
-        if (!isfinite(stored[i]))
+        if (!isfinite(stored[i])) {
+            v->nonfinite++;
             continue;
-        finite++;
+        }
         lo = stored[i] < lo ? stored[i] : lo;
         hi = stored[i] > hi ? stored[i] : hi;
     }
-    *min = finite ? lo : 0;
-    *max = finite ? hi : 0;
-    return n - finite;
+    if (v->nonfinite == n)
+        return;
+    const double a = lo * v->slope + v->inter, b = hi * v->slope + v->inter;
+    v->min = fmin(a, b);
+    v->max = fmax(a, b);
 }
 
 static host_status find_range(volume *v, host_error *error)
 {
-    size_t n = volume_count(v);
-    double lo, hi;
-    switch (v->type) {
-    case VOLUME_UINT8: range_uint8(v->voxels, n, &lo, &hi); break;
-    case VOLUME_INT8: range_int8(v->voxels, n, &lo, &hi); break;
-    case VOLUME_UINT16: range_uint16(v->voxels, n, &lo, &hi); break;
-    case VOLUME_INT16: range_int16(v->voxels, n, &lo, &hi); break;
-    case VOLUME_UINT32: range_uint32(v->voxels, n, &lo, &hi); break;
-    case VOLUME_INT32: range_int32(v->voxels, n, &lo, &hi); break;
-    default: v->nonfinite = range_float32(v->voxels, n, &lo, &hi);
-    }
-    double a = lo * v->slope + v->inter, b = hi * v->slope + v->inter;
-    v->min = fmin(a, b);
-    v->max = fmax(a, b);
-    if (v->nonfinite == n)
-        v->min = v->max = 0;
+    static const int32_t first[3];
+    if (v->type == VOLUME_FLOAT32)
+        find_range_float32(v);
+    else
+        volume_box_range(v, first, v->dims_vox, &v->min, &v->max);
     if (!isfinite(v->max - v->min))
         return host_fail(error, HOST_BAD_INPUT, "%s: values from %g to %g are outside the range of double", v->path,
                          v->min, v->max);

@@ -14,8 +14,6 @@
 #include "reference.h"
 #include "suite.h"
 
-enum { COLUMNS = 64, ROWS = 3 };
-
 static reference_volume volume_of(const test_case *c)
 {
     reference_volume v = {.type = c->input.voxel_bytes == 1 ? REFERENCE_UINT8 : REFERENCE_UINT16,
@@ -68,24 +66,6 @@ static bool fixed_agrees(test_case *c, FILE *file)
 
 /* ---- floating point ---- */
 
-/* Premultiplied; stretches show nothing, in every third table all but one; entries may be opaque. */
-static void fill_table(rng *r, double rgba[4 * COLUMNS * ROWS])
-{
-    const bool sparse = rng_one_in(r, 3);
-    const int only = (int)rng_int(r, 0, COLUMNS - 1);
-    bool shows = rng_one_in(r, 2);
-    double most = rng_one_in(r, 4) ? 1 : rng_real(r, 0.001, 0.3);
-    for (int i = 0; i < COLUMNS * ROWS; i++) {
-        if (i % COLUMNS == 0 || rng_one_in(r, 12))
-            shows = !shows;
-        if (sparse)
-            shows = i % COLUMNS >= only && i % COLUMNS < only + 4;
-        rgba[4 * i + 3] = shows ? rng_real(r, 0, most) : 0;
-        for (int c = 0; c < 3; c++)
-            rgba[4 * i + c] = rgba[4 * i + 3] * rng_real(r, 0, 1);
-    }
-}
-
 static reference_march_job random_job(test_case *c, double *rgba)
 {
     rng *r = &c->random;
@@ -96,7 +76,7 @@ static reference_march_job random_job(test_case *c, double *rgba)
     for (int a = 0; a < 3; a++)
         spacing_vox[a] = c->geometry.spacing[a] / finest;
     const bool rays = rng_one_in(r, 2), by_gradient = rng_one_in(r, 4);
-    fill_table(r, rgba);
+    case_fill_rgba(r, rgba);
     return (reference_march_job){
         .camera = rays ? reference_camera_rays(&c->view, spacing_vox, rng_real(r, 0.3, 2))
                        : reference_camera_slices(&c->view),
@@ -106,7 +86,7 @@ static reference_march_job random_job(test_case *c, double *rgba)
         .shading = rng_one_in(r, 3) ? REFERENCE_PHONG : REFERENCE_UNLIT,
         .block_vox = (int32_t)(rng_one_in(r, 4) ? rng_int(r, 2, 200) : rng_int(r, 2, 4)),
         .termination = rng_one_in(r, 3) ? 2 : rng_real(r, 0.3, 1),
-        .table = {COLUMNS, by_gradient ? ROWS : 1, rgba, by_gradient ? rng_real(r, 0.05, 1) : 0},
+        .table = {CASE_COLUMNS, by_gradient ? CASE_ROWS : 1, rgba, by_gradient ? rng_real(r, 0.05, 1) : 0},
         .window_scale = 1 / width,
         .window_offset = rng_real(r, -1, 0.5),
     };
@@ -150,7 +130,7 @@ static bool draw_way(const test_case *c, reference_march_job job, const way *w, 
 
 static bool ways_agree(test_case *c, FILE *file)
 {
-    double table[4 * COLUMNS * ROWS];
+    double table[4 * CASE_COLUMNS * CASE_ROWS];
     const reference_march_job job = random_job(c, table);
     size_t channels = 4 * (size_t)c->view.width_px * (size_t)c->view.height_px;
     double *first = malloc(channels * sizeof *first), *other = malloc(channels * sizeof *other);

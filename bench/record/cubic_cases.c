@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 64, ROWS = 3 };
-
 static const reference_accel accels[] = {REFERENCE_ACCEL_NONE, REFERENCE_ACCEL_RIVAL, REFERENCE_ACCEL_HULL,
                                          REFERENCE_ACCEL_BEST, REFERENCE_ACCEL_UNSAFE};
 
@@ -18,24 +16,6 @@ const char *cubic_accel_name(reference_accel accel)
     case REFERENCE_ACCEL_HULL: return "hull";
     case REFERENCE_ACCEL_BEST: return "best";
     default: return "unsafe";
-    }
-}
-
-/* Premultiplied; stretches show nothing, in every second table all but one, which lies anywhere. */
-static void fill_table(rng *r, double rgba[4 * COLUMNS * ROWS])
-{
-    const bool sparse = rng_one_in(r, 2);
-    const int only = (int)rng_int(r, 0, COLUMNS - 1);
-    const double most = rng_one_in(r, 4) ? 1 : rng_real(r, 0.001, 0.3);
-    bool shows = rng_one_in(r, 2);
-    for (int i = 0; i < COLUMNS * ROWS; i++) {
-        if (i % COLUMNS == 0 || rng_one_in(r, 12))
-            shows = !shows;
-        if (sparse)
-            shows = i % COLUMNS >= only && i % COLUMNS < only + 4;
-        rgba[4 * i + 3] = shows ? rng_real(r, 0, most) : 0;
-        for (int n = 0; n < 3; n++)
-            rgba[4 * i + n] = rgba[4 * i + 3] * rng_real(r, 0, 1);
     }
 }
 
@@ -65,11 +45,11 @@ static reference_march_job random_job(test_case *c, double scale, double offset,
     double spacing_vox[3];
     for (int a = 0; a < 3; a++)
         spacing_vox[a] = c->geometry.spacing[a] / finest;
-    fill_table(r, rgba);
+    case_fill_rgba(r, rgba);
     const double low = most * rng_real(r, -0.6, 0.9);
     reference_march_job job = {.numbers = REFERENCE_FLOAT,
                                .termination = 2,
-                               .table = {COLUMNS, by_gradient ? ROWS : 1, rgba, 0},
+                               .table = {CASE_COLUMNS, by_gradient ? CASE_ROWS : 1, rgba, 0},
                                .window_scale = 1 / (width * scale),
                                .window_offset = -(low * scale + offset) / (width * scale)};
     job.camera = rng_one_in(r, 2) ? reference_camera_rays(&c->view, spacing_vox, rng_real(r, 0.3, 2))
@@ -133,7 +113,7 @@ static bool hold_way(test_case *c, reference *r, const reference_march_job *job,
 
 bool cubic_case_hold(test_case *c, const reference_options *ways, int count, FILE *file, cubic_tally *t)
 {
-    double table[4 * COLUMNS * ROWS], scale = 1, offset = 0;
+    double table[4 * CASE_COLUMNS * CASE_ROWS], scale = 1, offset = 0;
     const bool is_float = rng_one_in(&c->random, 4);
     float *floats = is_float ? as_floats(c, &scale, &offset) : NULL;
     const reference_march_job job = random_job(c, scale, offset, table);

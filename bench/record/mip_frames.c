@@ -6,15 +6,13 @@
  * DEVICE: cuda, cpu, or plain: the CPU without vector instructions of its own and without packed cells. TYPE: uint8 or
  * int16; FROM, TO: WxHxD voxels, in the file and enlarged. A table is of every --accel in blocks of 2 voxels, a figure
  * of `seed` in all sizes to the volume's. Every picture is held against none's: exit 1 when one differs. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "camera.h"
-#include "enlarge.h"
 #include "mip_case.h"
+#include "stand_in.h"
 #include "stopwatch.h"
 
 enum { MAX_ROUNDS = 99 };
@@ -62,44 +60,10 @@ static int matrix(const reference_options *options, int cases)
 /* ---- the paper's figures ---- */
 
 typedef struct request {
-    const char *name, *path, *type;
-    int32_t from[3], to[3];
-    int side_px, rounds;
+    stand_in volume;
+    int rounds;
     bool figure;
 } request;
-
-static const struct {
-    const char *name;
-    double azimuth_deg, elevation_deg;
-} views[] = {{"0,0", 0, 0}, {"90,0", 90, 0}, {"0,90", 0, 90}, {"30,30", 30, 30}, {"-60,15", -60, 15}};
-
-/* The volume of a request, enlarged; NULL after a sentence. */
-static uint16_t *read_enlarged(const request *q)
-{
-    const size_t count = (size_t)q->from[0] * (size_t)q->from[1] * (size_t)q->from[2];
-    const size_t bytes = strcmp(q->type, "uint8") == 0 ? 1 : 2;
-    const size_t target = (size_t)q->to[0] * (size_t)q->to[1] * (size_t)q->to[2];
-    unsigned char *stored = malloc((count + 1) * bytes);
-    float *values = malloc(count * sizeof *values), lo = INFINITY, hi = -INFINITY;
-    uint16_t *voxels = malloc(target * sizeof *voxels);
-    FILE *file = fopen(q->path, "rb");
-    bool good = stored && values && voxels && file && fread(stored, bytes, count + 1, file) == count;
-    if (file)
-        fclose(file);
-    for (size_t i = 0; good && i < count; i++) {
-        values[i] = bytes == 1 ? stored[i] : (int16_t)(stored[2 * i] | stored[2 * i + 1] << 8);
-        lo = fminf(lo, values[i]);
-        hi = fmaxf(hi, values[i]);
-    }
-    good = good && hi > lo && enlarge(values, q->from, q->to, lo, hi, voxels);
-    free(stored);
-    free(values);
-    if (good)
-        return voxels;
-    fprintf(stderr, "mip_frames: %s: must be a file of %zu voxels of %s, not all the same\n", q->path, count, q->type);
-    free(voxels);
-    return NULL;
-}
 
 static bool draw(reference *r, reference_march_job job, reference_accel accel, int32_t block_vox, double *rgba,
                  reference_stats *stats)
@@ -112,30 +76,12 @@ static bool draw(reference *r, reference_march_job job, reference_accel accel, i
 
 static bool make_job(const request *q, int view, const double *table, reference_march_job *job)
 {
-    static const double spacing[3] = {1, 1, 1};
-    const int32_t wide = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
-    volume geometry = {.spacing = {1, 1, 1}, .axis = {0, 1, 2}, .sign = {1, 1, 1}};
-    camera c = camera_default();
-    host_error reason;
-    vodr_view registers;
-    double depth;
-    memcpy(geometry.dims_vox, q->to, sizeof geometry.dims_vox);
-    c.azimuth_deg = views[view].azimuth_deg;
-    c.elevation_deg = views[view].elevation_deg;
-    c.width_px = c.height_px = q->side_px;
-    c.slices = q->to[2];
-    c.zoom = (double)q->side_px / wide;
-    if (camera_view(&c, &geometry, &registers, &depth, &reason) != HOST_OK) {
-        fprintf(stderr, "mip_frames: %s\n", reason.text);
-        return false;
-    }
-    *job = (reference_march_job){.camera = reference_camera_rays(&registers, spacing, 1),
-                                 .blend = REFERENCE_MIP,
+    *job = (reference_march_job){.blend = REFERENCE_MIP,
                                  .filter = REFERENCE_LINEAR,
                                  .termination = 2,
                                  .table = {.columns = MIP_COLUMNS, .rows = 1, .rgba = table},
                                  .window_scale = 1 / 65535.0};
-    return true;
+    return stand_in_rays(&q->volume, view, &job->camera);
 }
 
 /* One way of drawing a view, and how long it took. */
@@ -155,9 +101,9 @@ static void print_entry(const request *q, const char *device, int view, entry *e
            "\"view\": \"%s\", \"accel\": \"%s\", \"block_vox\": %d, \"ms\": %.4f, \"least_ms\": %.4f, \"most_ms\": "
            "%.4f, \"cpu_ms\": %.4f, \"least_cpu_ms\": %.4f, \"first_cpu_ms\": %.4f, \"samples\": %llu, "
            "\"preprocess_ms\": %.3f}\n",
-           device, q->name, q->to[0], q->to[1], q->to[2], q->side_px, views[view].name, mip_accel_name(e->accel),
-           e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms, e->cpu_ms[0], e->first_cpu_ms,
-           (unsigned long long)e->samples, e->preprocess_ms);
+           device, q->volume.name, q->volume.to[0], q->volume.to[1], q->volume.to[2], q->volume.side_px,
+           stand_in_view(view), mip_accel_name(e->accel), e->block_vox, ms, e->ms[0], e->ms[rounds - 1], cpu_ms,
+           e->cpu_ms[0], e->first_cpu_ms, (unsigned long long)e->samples, e->preprocess_ms);
 }
 
 /* Draws the entries in turn; the picture of `none`, of these or an earlier call, is what all others are held against.
@@ -165,7 +111,7 @@ static void print_entry(const request *q, const char *device, int view, entry *e
 static bool time_entries(const request *q, reference *r, const reference_march_job *job, int view, entry *entries,
                          int count, double *pictures[2])
 {
-    const size_t bytes = 4 * (size_t)q->side_px * (size_t)q->side_px * sizeof **pictures;
+    const size_t bytes = 4 * (size_t)q->volume.side_px * (size_t)q->volume.side_px * sizeof **pictures;
     bool good = true;
     for (int round = -1; good && round < q->rounds; round++) /* the first round warms up */
         for (int i = 0; good && i < count; i++) {
@@ -183,8 +129,8 @@ static bool time_entries(const request *q, reference *r, const reference_march_j
                 e->cpu_ms[round] = cpu_ms;
             }
             if (good && e->accel != REFERENCE_ACCEL_NONE && memcmp(pictures[0], pictures[1], bytes) != 0) {
-                fprintf(stderr, "mip_frames: %s, view %s, %s: not the picture of none\n", q->name, views[view].name,
-                        mip_accel_name(e->accel));
+                fprintf(stderr, "mip_frames: %s, view %s, %s: not the picture of none\n", q->volume.name,
+                        stand_in_view(view), mip_accel_name(e->accel));
                 good = false;
             }
         }
@@ -202,8 +148,8 @@ static bool draw_view(const request *q, reference *r, int view, double *pictures
     if (!make_job(q, view, table, &job))
         return false;
     entry entries[REFERENCE_ACCEL_BEST + 1] = {{.accel = REFERENCE_ACCEL_NONE, .block_vox = 2}};
-    int32_t longest = q->to[0] > q->to[1] ? q->to[0] : q->to[1];
-    longest = longest > q->to[2] ? longest : q->to[2];
+    int32_t longest = q->volume.to[0] > q->volume.to[1] ? q->volume.to[0] : q->volume.to[1];
+    longest = longest > q->volume.to[2] ? longest : q->volume.to[2];
     for (int accel = REFERENCE_ACCEL_BLOCK; accel <= REFERENCE_ACCEL_BEST; accel++)
         entries[accel] = (entry){.accel = (reference_accel)accel, .block_vox = 2};
     bool good = time_entries(q, r, &job, view, entries, q->figure ? 1 : REFERENCE_ACCEL_BEST + 1, pictures);
@@ -216,26 +162,21 @@ static bool draw_view(const request *q, reference *r, int view, double *pictures
 
 static int figures(const reference_options *options, const request *q)
 {
-    uint16_t *voxels = read_enlarged(q);
-    const size_t channels = 4 * (size_t)q->side_px * (size_t)q->side_px;
+    uint16_t *voxels = stand_in_read(&q->volume);
+    const size_t channels = 4 * (size_t)q->volume.side_px * (size_t)q->volume.side_px;
     double *pictures[2] = {malloc(channels * sizeof(double)), malloc(channels * sizeof(double))};
     reference_volume v = {.type = REFERENCE_UINT16, .voxels = voxels};
     reference *r = NULL;
     vodr_error error;
-    memcpy(v.dims_vox, q->to, sizeof v.dims_vox);
+    memcpy(v.dims_vox, q->volume.to, sizeof v.dims_vox);
     bool good = voxels && pictures[0] && pictures[1] && say(reference_open(options, &v, &r, &error), "open", &error);
-    for (int view = 0; good && view < (int)(sizeof views / sizeof *views); view++)
+    for (int view = 0; good && view < STAND_IN_VIEWS; view++)
         good = draw_view(q, r, view, pictures);
     reference_close(r);
     free(voxels);
     free(pictures[0]);
     free(pictures[1]);
     return good ? 0 : 1;
-}
-
-static bool read_size(const char *text, int32_t size[3])
-{
-    return sscanf(text, "%dx%dx%d", &size[0], &size[1], &size[2]) == 3 && size[0] > 0 && size[1] > 0 && size[2] > 0;
 }
 
 int main(int argc, char **argv)
@@ -246,15 +187,12 @@ int main(int argc, char **argv)
     if (argc == 4 && strcmp(argv[2], "matrix") == 0)
         return matrix(&options, atoi(argv[3]));
     if (argc == 10 || argc == 11) {
-        request q = {.name = argv[3],
-                     .path = argv[4],
-                     .type = argv[5],
-                     .side_px = atoi(argv[8]),
+        request q = {.volume = {.name = argv[3], .path = argv[4], .type = argv[5], .side_px = atoi(argv[8])},
                      .rounds = atoi(argv[9]),
                      .figure = strcmp(argv[2], "figure") == 0};
         options.threads = argc == 11 ? atoi(argv[10]) : 0;
-        if (read_size(argv[6], q.from) && read_size(argv[7], q.to) && q.side_px > 0 && q.side_px <= 4096 &&
-            q.rounds > 0 && q.rounds <= MAX_ROUNDS)
+        if (stand_in_size(argv[6], q.volume.from) && stand_in_size(argv[7], q.volume.to) && q.volume.side_px > 0 &&
+            q.volume.side_px <= 4096 && q.rounds > 0 && q.rounds <= MAX_ROUNDS)
             return figures(&options, &q);
     }
     fputs("usage: mip_frames cuda|cpu|plain matrix CASES | table|figure NAME VOLUME.raw uint8|int16 FROM TO SIDE_PX "

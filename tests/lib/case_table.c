@@ -1,4 +1,4 @@
-/* case_table.c - random premultiplied tables, in integers only. */
+/* case_table.c - random premultiplied tables: the machine's, in integers only, and a reference renderer's. */
 #include "case_parts.h"
 
 #include <stdlib.h>
@@ -53,4 +53,21 @@ bool case_make_table(test_case *c)
     }
     c->table = (vodr_table){.entries = c->entries, .count = (size_t)count};
     return true;
+}
+
+void case_fill_rgba(rng *r, double rgba[4 * CASE_COLUMNS * CASE_ROWS])
+{
+    const bool sparse = rng_one_in(r, 2);
+    const int only = (int)rng_int(r, 0, CASE_COLUMNS - 1);
+    const double most = rng_one_in(r, 4) ? 1 : rng_real(r, 0.001, 0.3);
+    bool shows = rng_one_in(r, 2);
+    for (int i = 0; i < CASE_COLUMNS * CASE_ROWS; i++) {
+        if (i % CASE_COLUMNS == 0 || rng_one_in(r, 12))
+            shows = !shows;
+        if (sparse)
+            shows = i % CASE_COLUMNS >= only && i % CASE_COLUMNS < only + 4;
+        rgba[4 * i + 3] = shows ? rng_real(r, 0, most) : 0;
+        for (int n = 0; n < 3; n++)
+            rgba[4 * i + n] = rgba[4 * i + 3] * rng_real(r, 0, 1);
+    }
 }

@@ -51,6 +51,11 @@ void case_verilog_machine(test_case *c, vodr_machine *machine);
 /* Gives a machine about as much texture memory as its bricks need, or too small a cache: it may not be buildable. */
 void case_spoil(test_case *c, vodr_machine *machine);
 
+/* Fills a table of a reference renderer, CASE_ROWS rows of CASE_COLUMNS entries, RGBA premultiplied: stretches show
+ * nothing, in every second table all but one; entries may be opaque. */
+enum { CASE_COLUMNS = 64, CASE_ROWS = 3 };
+void case_fill_rgba(rng *r, double rgba[4 * CASE_COLUMNS * CASE_ROWS]);
+
 /* Writes what is needed to see the case: seed, volume, view, machine. */
 void case_print(FILE *file, const test_case *c, const vodr_machine *machine);
 
