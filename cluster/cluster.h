@@ -69,7 +69,7 @@ typedef enum cluster_composite { CLUSTER_DIRECT, CLUSTER_BINARY_SWAP, CLUSTER_RA
 
 /* By time, so many frames are drawn before the volume is divided anew, the least of their times counts; and so many
  * divisions are tried at most, the one whose slowest node is fastest stays. */
-enum { CLUSTER_TIMED_FRAMES = 3, CLUSTER_TIMED_DIVISIONS = 6 };
+enum { CLUSTER_TIMED_FRAMES = 8, CLUSTER_TIMED_DIVISIONS = 20 };
 
 enum { CLUSTER_MAX_NODES = 1024, CLUSTER_LEAST_SUBVOLUME_VOX = 4, CLUSTER_MOST_SUBVOLUME_VOX = 64 };
 

@@ -66,10 +66,10 @@ for blend in over mip; do
     done
 done
 
-# By time the volume is divided anew after each third frame, and at last as it was best.
+# By time planes move after each eighth frame; at last they lie as they were best.
 # shellcheck disable=SC2086
 {
-    good "7 nodes by time" "$vodr" cluster $raw $perspective --nodes 7 --weight time --repeat 22 -o x.png --stats s.json
+    good "7 nodes by time" "$vodr" cluster $raw $perspective --nodes 7 --weight time --repeat 170 -o x.png --stats s.json
     good "the same picture" "$vodr" compare x.png perspective-over.png --tolerance 1
 }
 
@@ -186,7 +186,7 @@ END
     good "float voxels, gradient lighting" "$vodr" reference v.raw --dims 20x11x30 --type float32 --shading phong -o y.png
     good "the same, 3 processes" ranks 3 "$vodr" cluster v.raw --dims 20x11x30 --type float32 --shading phong -o x.png
     good "the same picture" "$vodr" compare x.png y.png --tolerance 1
-    good "3 processes by time" ranks 3 "$vodr" cluster $raw $perspective --weight time --repeat 22 -o x.png
+    good "3 processes by time" ranks 3 "$vodr" cluster $raw $perspective --weight time --repeat 170 -o x.png
     good "the same picture" "$vodr" compare x.png perspective-over.png --tolerance 1
     good "more processes than sub-volumes" ranks 5 "$vodr" cluster small.raw --dims 3x3x3 --raw x.rgba
     ends 2 "vodr: none.nrrd: " ranks 3 "$vodr" cluster none.nrrd -o x.png
