@@ -166,19 +166,30 @@ static cluster_status divide(cluster *c, const balance_input *in, double wanted,
     return balance_make(c->options.balance, in, &c->planes, error);
 }
 
-cluster_status cluster_place(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error)
+static cluster_status place(cluster *c, const reference_march_job *job, double lo, double hi, double wanted,
+                            vodr_error *error)
 {
     const double begin_s = cluster_now_s();
+    cluster_status status = weigh(c, job, lo, hi, error);
+    const balance_input in = {&c->counts, &c->weights, c->nodes};
+    if (status == CLUSTER_OK)
+        status = divide(c, &in, wanted, error);
+    status = cluster_agree(c->node, status, error);
+    return status == CLUSTER_OK ? division_load(c, job, begin_s, error) : status;
+}
+
+cluster_status cluster_place(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error)
+{
     bool stays = false;
     cluster_status status = CLUSTER_OK;
     if (c->options.weight == CLUSTER_TIME && c->tree.count > 0)
         status = timing_look(c, job, &stays, error);
-    if (status != CLUSTER_OK || stays)
-        return status;
-    status = weigh(c, job, lo, hi, error);
-    const balance_input in = {&c->counts, &c->weights, c->nodes};
-    if (status == CLUSTER_OK)
-        status = divide(c, &in, balance_enough, error);
-    status = cluster_agree(c->node, status, error);
-    return status == CLUSTER_OK ? division_load(c, job, begin_s, error) : status;
+    return status != CLUSTER_OK || stays ? status : place(c, job, lo, hi, balance_enough, error);
+}
+
+cluster_status cluster_change_function(cluster *c, const reference_march_job *job, double lo, double hi,
+                                       vodr_error *error)
+{
+    timing_forget(c);
+    return place(c, job, lo, hi, bearable, error);
 }

@@ -12,9 +12,11 @@ typedef struct brick {
     int32_t lo_vox[3], hi_vox[3];
     int32_t border_vox;
     size_t held_bytes;
-    void *voxels; /* to be released; NULL: not loaded */
-    reference *renderer;
-    double cpu_s; /* least of the frames since it was placed; 0: none was drawn */
+    void *voxels;            /* of the source, to be released; NULL: */
+    void *made;              /* put together of others, owned */
+    reference_volume volume; /* either */
+    reference *renderer;     /* NULL: not loaded */
+    double cpu_s;            /* least of the frames since it was placed; 0: none was drawn */
 } brick;
 
 /* Bricks by the number of their leaf, so that the order of sight finds them. */
@@ -60,6 +62,9 @@ cluster_status division_load(cluster *c, const reference_march_job *job, double 
 /* By time, whether the division stays for the next frame; all nodes know the same times. */
 cluster_status timing_look(cluster *c, const reference_march_job *job, bool *stays, vodr_error *error);
 
+/* Forgets all times: something else is drawn. */
+void timing_forget(cluster *c);
+
 /* Whether a node of the cluster is drawn by this process. */
 static inline bool cluster_holds(const cluster *c, int32_t owner)
 {
@@ -75,8 +80,18 @@ cluster_status weights_measure(cluster *c, const reference_camera *camera, vodr_
 /* The voxels of a leaf's box, half-open. */
 void bricks_box(const cluster *c, int32_t leaf, int32_t lo_vox[3], int32_t hi_vox[3]);
 
-/* Loads the bricks of this process for the tree, taking over those of `old` that are the same, and frees the rest of
- * them. */
+/* The same with its border. */
+void bricks_border(const cluster *c, const brick *b, int32_t lo_vox[3], int32_t hi_vox[3]);
+
+/* Whether there is an old brick of the same box, border and node. */
+bool bricks_stay(const bricks *old, const brick *b);
+
+/* Gives the bricks of this process that do not stay, which have no voxels yet, theirs: of `old` bricks, whose nodes
+ * send what others need, and of the file. Tells c->report.change. All nodes call it. */
+cluster_status exchange_bricks(cluster *c, const bricks *old, vodr_error *error);
+
+/* Loads the bricks of this process for the tree, of the file the first time, and frees `old` ones. All nodes call it.
+ */
 cluster_status bricks_load(cluster *c, bricks *old, int32_t border_vox, vodr_error *error);
 void bricks_free(const cluster_source *source, bricks *b);
 

@@ -47,3 +47,12 @@ cluster_status timing_look(cluster *c, const reference_march_job *job, bool *sta
     }
     return status;
 }
+
+void timing_forget(cluster *c)
+{
+    free(c->measured);
+    c->measured = NULL;
+    kd_tree_free(&c->best);
+    c->tries = 0;
+    c->report.lbr_time = 0;
+}

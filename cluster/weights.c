@@ -109,11 +109,11 @@ static double share_out(const cluster *c, const box *b, const reference_camera *
 static void share_all(const cluster *c, const reference_camera *camera, double *boxes_s, double *seconds)
 {
     for (int32_t i = 0; i < c->bricks.count; i++)
-        if (c->bricks.brick[i].voxels)
+        if (c->bricks.brick[i].renderer)
             boxes_s[c->bricks.brick[i].owner] += c->bricks.brick[i].cpu_s;
     for (int32_t i = 0; i < c->bricks.count; i++) {
         const brick *b = &c->bricks.brick[i];
-        if (!b->voxels || b->cpu_s <= 0)
+        if (!b->renderer || b->cpu_s <= 0)
             continue;
         const double sum = share_out(c, &c->tree.node[i].box, camera, 0, seconds);
         const double box_s = b->cpu_s * c->share[b->owner].cpu_s / boxes_s[b->owner];

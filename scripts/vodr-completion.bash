@@ -67,7 +67,7 @@ _vodr_value() {
         ;;
     --blend | --traversal) _vodr_values "$1" "${3#--}" ;;
     --filter) if [ "$2" = reference ]; then _vodr_words "$1" "$2" "$3"; else _vodr_values "$1" filter; fi ;;
-    --tf)
+    --tf | --then)
         _vodr_words "$1" "$2" "$3"
         compgen -f -- "$4"
         ;;
