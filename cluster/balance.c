@@ -85,12 +85,12 @@ void balance_total(const kd_tree *t, const sums *s, int32_t nodes, double *total
             total[t->node[i].owner] += sums_of(s, &t->node[i].box);
 }
 
-void balance_leaves(const kd_tree *t, int32_t nodes, int32_t *leaves)
+void balance_leaves(const kd_tree *t, const sums *occupied, int32_t nodes, int32_t *leaves)
 {
     for (int32_t i = 0; i < nodes; i++)
         leaves[i] = 0;
     for (int32_t i = 0; i < t->count; i++)
-        if (t->node[i].axis == KD_LEAF && t->node[i].owner != KD_NOBODY)
+        if (t->node[i].axis == KD_LEAF && t->node[i].owner != KD_NOBODY && sums_of(occupied, &t->node[i].box) > 0)
             leaves[t->node[i].owner]++;
 }
 

@@ -14,6 +14,9 @@ typedef struct balance_input {
     int32_t nodes;
 } balance_input;
 
+/* Nodes are equal enough for a division from scratch. */
+static const double balance_enough = 0.99;
+
 /* Divides all sub-volumes among the nodes: leaves with owners from 0 on, numbered as the tree's walk from one side has
  * them. A node may get nothing where there are not enough sub-volumes.
  *
@@ -26,9 +29,16 @@ cluster_status balance_make(cluster_balance method, const balance_input *in, kd_
 /* The method CLUSTER_BEST. */
 cluster_status balance_best(const balance_input *in, kd_tree *t, vodr_error *error);
 
-/* What it ends with: pieces change owner until the nodes' weights are within a hundredth, or no piece helps, or all
- * have BALANCE_PARTS parts. */
-cluster_status balance_trade(const balance_input *in, kd_tree *t, vodr_error *error);
+/* What it ends with: pieces change owner until the least of the nodes' weights is `enough` of the greatest, or no piece
+ * helps, or all have BALANCE_PARTS parts. */
+cluster_status balance_trade(const balance_input *in, double enough, kd_tree *t, vodr_error *error);
+
+/* Makes a division with CLUSTER_BEST, of the same nodes, even for other weights: first planes move, then pieces change
+ * owner, until the ratio is `enough` or nothing helps. Boxes come to hold all that planes leave them, empty or not. */
+cluster_status balance_adjust(const balance_input *in, double enough, kd_tree *t, vodr_error *error);
+
+/* Gives leaves all that planes leave them, and an owner each, so that they cover `all`. */
+void balance_widen(kd_tree *t, const box *all);
 
 /* The place of the plane that divides the weight in a box as left:right, by walking from both ends, always on the side
  * that has less of its share. Between lo and hi of the axis, both included. */
@@ -37,8 +47,8 @@ int32_t balance_plane(const sums *weight, const box *b, int axis, int32_t left, 
 /* What each node has: sums over its leaves into total[nodes]. */
 void balance_total(const kd_tree *t, const sums *s, int32_t nodes, double *total);
 
-/* Leaves of each node. */
-void balance_leaves(const kd_tree *t, int32_t nodes, int32_t *leaves);
+/* Leaves of each node that hold something. */
+void balance_leaves(const kd_tree *t, const sums *occupied, int32_t nodes, int32_t *leaves);
 
 /* The least over the greatest, 0 where both are 0 (Lee, Park, Han, equation 4). */
 double balance_ratio(const double *total, int32_t nodes);

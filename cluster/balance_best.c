@@ -185,5 +185,5 @@ cluster_status balance_best(const balance_input *in, kd_tree *t, vodr_error *err
         status = cluster_no_memory(error);
     free(s.target);
     free(s.parts);
-    return status == CLUSTER_OK ? balance_trade(in, t, error) : status;
+    return status == CLUSTER_OK ? balance_trade(in, balance_enough, t, error) : status;
 }

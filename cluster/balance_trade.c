@@ -7,9 +7,6 @@
 
 #include "fail.h"
 
-/* Nodes are equal enough. */
-static const double enough = 0.99;
-
 enum { PLANES = 3 };
 
 /* A slab at a side of a box, of that one at a side of its own, and so on. */
@@ -25,6 +22,7 @@ typedef struct trade {
     const sums *weight;
     kd_tree *tree;
     int32_t nodes;
+    double enough;
     double *total;  /* of each node */
     int32_t *parts; /* of each node */
 } trade;
@@ -114,7 +112,7 @@ static cluster_status trade_once(trade *t, bool *done, vodr_error *error)
 {
     const int32_t most = extreme(t, true, false), least = extreme(t, false, false);
     *done = false;
-    if (t->total[least] >= enough * t->total[most])
+    if (t->total[least] >= t->enough * t->total[most])
         return CLUSTER_OK;
     for (int32_t i = 0; i <= t->nodes;
          i++) { /* of the node with the most to whom it can; then of anyone to the least */
@@ -130,16 +128,16 @@ static cluster_status trade_once(trade *t, bool *done, vodr_error *error)
     return CLUSTER_OK;
 }
 
-cluster_status balance_trade(const balance_input *in, kd_tree *tree, vodr_error *error)
+cluster_status balance_trade(const balance_input *in, double enough, kd_tree *tree, vodr_error *error)
 {
-    trade t = {.weight = in->weight, .tree = tree, .nodes = in->nodes};
+    trade t = {.weight = in->weight, .tree = tree, .nodes = in->nodes, .enough = enough};
     cluster_status status = CLUSTER_OK;
     t.total = malloc((size_t)in->nodes * sizeof *t.total);
     t.parts = malloc((size_t)in->nodes * sizeof *t.parts);
     if (t.total && t.parts) {
         bool done = true;
         balance_total(tree, in->weight, in->nodes, t.total);
-        balance_leaves(tree, in->nodes, t.parts);
+        balance_leaves(tree, in->occupied, in->nodes, t.parts);
         for (int32_t i = 0; status == CLUSTER_OK && done && i < 4 * in->nodes; i++)
             status = trade_once(&t, &done, error);
     } else {

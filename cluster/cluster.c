@@ -100,7 +100,6 @@ void cluster_close(cluster *c)
     free(c->measured);
     free(c->share);
     kd_tree_free(&c->best);
-    free(c->best_share);
     free(c);
 }
 

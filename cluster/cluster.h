@@ -69,7 +69,7 @@ typedef enum cluster_composite { CLUSTER_DIRECT, CLUSTER_BINARY_SWAP, CLUSTER_RA
 
 /* By time, so many frames are drawn before the volume is divided anew, the least of their times counts; and so many
  * divisions are tried at most, the one whose slowest node is fastest stays. */
-enum { CLUSTER_TIMED_FRAMES = 3, CLUSTER_TIMED_DIVISIONS = 6 };
+enum { CLUSTER_TIMED_FRAMES = 8, CLUSTER_TIMED_DIVISIONS = 20 };
 
 enum { CLUSTER_MAX_NODES = 1024, CLUSTER_LEAST_SUBVOLUME_VOX = 4, CLUSTER_MOST_SUBVOLUME_VOX = 64 };
 
@@ -106,6 +106,11 @@ void cluster_close(cluster *c);
  * when enough is known. */
 cluster_status cluster_place(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error);
 
+/* The same for another transfer function: a division whose nodes are still nearly even stays, else by best as few
+ * sub-volumes as need be change owner, and nodes exchange only what is new to them. */
+cluster_status cluster_change_function(cluster *c, const reference_march_job *job, double lo, double hi,
+                                       vodr_error *error);
+
 /* Draws into rgba[4*width*height] of node 0, as reference_march() does; NULL elsewhere. After cluster_place(). */
 cluster_status cluster_draw(cluster *c, const reference_march_job *job, double *rgba, vodr_error *error);
 
@@ -126,6 +131,13 @@ typedef struct cluster_share {
     double scan_s, divide_s, load_s; /* preprocessing */
 } cluster_share;
 
+/* Of the voxels of a division that is not the first, borders too; of all nodes. */
+typedef struct cluster_change {
+    uint64_t moved_bytes;   /* from node to node */
+    uint64_t read_bytes;    /* from the file: no node had them */
+    uint64_t scatter_bytes; /* that nodes hold now: a scatter of all */
+} cluster_change;
+
 typedef struct cluster_report {
     int32_t nodes;
     bool simulated;
@@ -135,6 +147,7 @@ typedef struct cluster_report {
     double slowest_s;     /* rendering of the slowest node */
     double barrier_share; /* of that: how long the fastest waits for it */
     double frame_s;       /* rendering and compositing; simulated: by the model */
+    cluster_change change;
 } cluster_report;
 
 /* Of the last cluster_draw(); lives until the next call. On node 0. */

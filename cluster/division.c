@@ -1,5 +1,4 @@
-/* division.c - a volume divided for what is to be seen of it, each node's part loaded; by time again and again, until
- * nodes are even or the best is found. */
+/* division.c - a volume divided for what is to be seen of it, and each node's part loaded. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,14 +12,15 @@ enum { CLUSTER_LEAST = 15 };
 
 /* A box this full of sub-volumes that are not empty is not divided further: as the paper has it, and with best, as rays
  * pass over what is empty, but cost something in each box. */
-static const double efficiency = 0.8, best_efficiency = 0.4;
+static const double efficiency = 0.8, best_efficiency = 0.2;
 
-/* By time, the volume is not divided anew while the nodes are as even as this. */
-static const double even = 0.92;
+/* A division whose nodes are less even than this, after all that its planes can do, is made anew. */
+static const double bearable = 0.9;
 
 void division_free(cluster *c)
 {
     kd_tree_free(&c->tree);
+    kd_tree_free(&c->planes);
     sums_free(&c->counts);
     sums_free(&c->weights);
 }
@@ -43,6 +43,7 @@ static cluster_status function_of(const reference_march_job *job, double lo, dou
     return CLUSTER_OK;
 }
 
+/* Makes the sums of sub-volumes and of their weights. */
 static cluster_status sum_up(cluster *c, vodr_error *error)
 {
     const size_t total = subvolumes_total(c->grid.count);
@@ -51,6 +52,8 @@ static cluster_status sum_up(cluster *c, vodr_error *error)
         return cluster_no_memory(error);
     for (size_t i = 0; i < total; i++)
         count[i] = c->occupied[i];
+    sums_free(&c->counts);
+    sums_free(&c->weights);
     cluster_status status = sums_make(c->grid.count, count, &c->counts, error);
     if (status == CLUSTER_OK)
         status = sums_make(c->grid.count, c->weight, &c->weights, error);
@@ -72,17 +75,17 @@ static void tell_ratios(cluster *c)
     c->report.lbr_weight = most[1] > 0 ? least[1] / most[1] : 0;
 }
 
-/* What each node has of the tree, before its parts are made clusters. */
+/* What each node has. */
 static cluster_status tell_shares(cluster *c, vodr_error *error)
 {
     double *total = malloc((size_t)c->nodes * sizeof *total);
     int32_t *leaves = malloc((size_t)c->nodes * sizeof *leaves);
     if (total && leaves) {
-        balance_leaves(&c->tree, c->nodes, leaves);
-        balance_total(&c->tree, &c->counts, c->nodes, total);
+        balance_leaves(&c->planes, &c->counts, c->nodes, leaves);
+        balance_total(&c->planes, &c->counts, c->nodes, total);
         for (int32_t i = 0; i < c->nodes; i++)
             c->share[i] = (cluster_share){.subvolumes = total[i], .parts = leaves[i], .scan_s = c->scan_s};
-        balance_total(&c->tree, &c->weights, c->nodes, total);
+        balance_total(&c->planes, &c->weights, c->nodes, total);
         for (int32_t i = 0; i < c->nodes; i++)
             c->share[i].weight = total[i];
         tell_ratios(c);
@@ -93,34 +96,40 @@ static cluster_status tell_shares(cluster *c, vodr_error *error)
     return status;
 }
 
-static cluster_status divide(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error)
+/* Finds what is not empty, and weighs it. */
+static cluster_status weigh(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error)
 {
     cluster_function f;
-    division_free(c);
     cluster_status status = function_of(job, lo, hi, &f, error);
     if (status != CLUSTER_OK)
         return status;
     c->occupied_count = octree_occupied(&c->octree, &f, c->occupied);
     free((void *)f.visible);
     weights_fill(c, &job->camera, c->weight);
-    status = sum_up(c, error);
-    const balance_input in = {&c->counts, &c->weights, c->nodes};
-    if (status == CLUSTER_OK)
-        status = balance_make(c->options.balance, &in, &c->tree, error);
+    return sum_up(c, error);
+}
+
+/* Makes parts of c->planes clusters, which are c->tree. */
+static cluster_status make_clusters(cluster *c, vodr_error *error)
+{
+    const bool best = c->options.balance == CLUSTER_BEST;
+    kd_tree_free(&c->tree);
+    cluster_status status = kd_tree_copy(&c->planes, &c->tree, error);
     if (status == CLUSTER_OK)
         status = tell_shares(c, error);
     if (status == CLUSTER_OK && c->options.balance != CLUSTER_STATIC)
-        status =
-            clustering_refine(&c->tree, &c->counts, c->options.balance == CLUSTER_BEST ? best_efficiency : efficiency,
-                              CLUSTER_LEAST, error);
+        status = clustering_refine(&c->tree, &c->counts, best ? best_efficiency : efficiency, CLUSTER_LEAST, error);
     return status;
 }
 
-static cluster_status load(cluster *c, const reference_march_job *job, double begin_s, vodr_error *error)
+cluster_status division_load(cluster *c, const reference_march_job *job, double begin_s, vodr_error *error)
 {
+    cluster_status status = cluster_agree(c->node, make_clusters(c, error), error);
+    if (status != CLUSTER_OK)
+        return status;
     const double divided_s = cluster_now_s();
     bricks old = c->bricks;
-    cluster_status status = cluster_agree(c->node, bricks_load(c, &old, reference_border_vox(job), error), error);
+    status = cluster_agree(c->node, bricks_load(c, &old, reference_border_vox(job), error), error);
     for (int32_t i = 0; i < c->nodes; i++) {
         c->share[i].divide_s = divided_s - begin_s;
         c->share[i].load_s = cluster_now_s() - divided_s;
@@ -129,80 +138,58 @@ static cluster_status load(cluster *c, const reference_march_job *job, double be
     return status;
 }
 
-/* ---- by time ---- */
-
-static cluster_status copy_division(cluster *c, vodr_error *error)
+/* How even the nodes are with c->planes. */
+static cluster_status ratio_of(const cluster *c, double *ratio, vodr_error *error)
 {
-    const size_t nodes_bytes = (size_t)c->tree.count * sizeof *c->tree.node;
-    const size_t share_bytes = (size_t)c->nodes * sizeof *c->share;
-    kd_node *node = malloc(nodes_bytes);
-    cluster_share *share = malloc(share_bytes);
-    if (!node || !share) {
-        free(node);
-        free(share);
+    double *total = malloc((size_t)c->nodes * sizeof *total);
+    if (!total)
         return cluster_no_memory(error);
-    }
-    kd_tree_free(&c->best);
-    free(c->best_share);
-    c->best = (kd_tree){memcpy(node, c->tree.node, nodes_bytes), c->tree.count, c->tree.count};
-    c->best_share = memcpy(share, c->share, share_bytes);
+    balance_total(&c->planes, &c->weights, c->nodes, total);
+    *ratio = balance_ratio(total, c->nodes);
+    free(total);
     return CLUSTER_OK;
 }
 
-/* Looks at the division that was just measured, and keeps it if it is the best so far. */
-static cluster_status judge(cluster *c, vodr_error *error)
+/* Divides from scratch, or, where there is a division by best, moves its planes if that does. */
+static cluster_status divide(cluster *c, const balance_input *in, double wanted, vodr_error *error)
 {
-    double slowest_s = 0;
-    for (int32_t i = 0; i < c->nodes; i++)
-        slowest_s = c->share[i].cpu_s > slowest_s ? c->share[i].cpu_s : slowest_s;
-    const bool best = c->tries == 0 || slowest_s < c->best_s;
-    c->tries++;
-    if (!best)
-        return CLUSTER_OK;
-    c->best_s = slowest_s;
-    return copy_division(c, error);
+    double ratio = 0;
+    cluster_status status = CLUSTER_OK;
+    if (c->planes.count > 0 && c->options.balance == CLUSTER_BEST) {
+        status = balance_adjust(in, wanted, &c->planes, error);
+        if (status == CLUSTER_OK)
+            status = ratio_of(c, &ratio, error);
+    }
+    if (status != CLUSTER_OK || ratio >= bearable)
+        return status;
+    kd_tree_free(&c->planes);
+    return balance_make(c->options.balance, in, &c->planes, error);
 }
 
-/* Goes back to the best division. */
-static cluster_status restore(cluster *c, const reference_march_job *job, vodr_error *error)
+static cluster_status place(cluster *c, const reference_march_job *job, double lo, double hi, double wanted,
+                            vodr_error *error)
 {
     const double begin_s = cluster_now_s();
-    kd_tree_free(&c->tree);
-    c->tree = c->best;
-    c->best = (kd_tree){0};
-    for (int32_t i = 0; i < c->nodes; i++)
-        c->share[i] = (cluster_share){.subvolumes = c->best_share[i].subvolumes,
-                                      .weight = c->best_share[i].weight,
-                                      .parts = c->best_share[i].parts,
-                                      .scan_s = c->scan_s};
-    tell_ratios(c);
-    return load(c, job, begin_s, error);
-}
-
-/* Whether the division stays for the next frame; all nodes know the same times. */
-static cluster_status look_again(cluster *c, const reference_march_job *job, bool *stays, vodr_error *error)
-{
-    *stays = c->frames < CLUSTER_TIMED_FRAMES || c->tries > CLUSTER_TIMED_DIVISIONS || c->report.lbr_time >= even;
-    if (*stays)
-        return CLUSTER_OK;
-    cluster_status status = cluster_agree(c->node, judge(c, error), error);
-    if (status == CLUSTER_OK && c->tries == CLUSTER_TIMED_DIVISIONS) {
-        *stays = true;
-        c->tries++;
-        status = restore(c, job, error);
-    }
-    return status;
+    cluster_status status = weigh(c, job, lo, hi, error);
+    const balance_input in = {&c->counts, &c->weights, c->nodes};
+    if (status == CLUSTER_OK)
+        status = divide(c, &in, wanted, error);
+    status = cluster_agree(c->node, status, error);
+    return status == CLUSTER_OK ? division_load(c, job, begin_s, error) : status;
 }
 
 cluster_status cluster_place(cluster *c, const reference_march_job *job, double lo, double hi, vodr_error *error)
 {
-    const double begin_s = cluster_now_s();
     bool stays = false;
     cluster_status status = CLUSTER_OK;
     if (c->options.weight == CLUSTER_TIME && c->tree.count > 0)
-        status = look_again(c, job, &stays, error);
-    if (status != CLUSTER_OK || stays)
-        return status;
-    status = cluster_agree(c->node, divide(c, job, lo, hi, error), error);
-    return status == CLUSTER_OK ? load(c, job, begin_s, error) : status;
+        status = timing_look(c, job, &stays, error);
+    return status != CLUSTER_OK || stays ? status : place(c, job, lo, hi, balance_enough, error);
+}
+
+cluster_status cluster_change_function(cluster *c, const reference_march_job *job, double lo, double hi,
+                                       vodr_error *error)
+{
+    timing_forget(c);
+    return place(c, job, lo, hi, bearable, error);
 }

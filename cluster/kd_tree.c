@@ -2,6 +2,7 @@
 #include "kd_tree.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "fail.h"
 
@@ -29,6 +30,18 @@ void kd_tree_free(kd_tree *t)
 {
     free(t->node);
     *t = (kd_tree){0};
+}
+
+cluster_status kd_tree_copy(const kd_tree *from, kd_tree *t, vodr_error *error)
+{
+    const size_t bytes = (size_t)from->count * sizeof *from->node;
+    *t = (kd_tree){malloc(bytes), from->count, from->count};
+    if (!t->node) {
+        *t = (kd_tree){0};
+        return cluster_fail(error, CLUSTER_ENVIRONMENT, "no memory for a tree of %d nodes", from->count);
+    }
+    memcpy(t->node, from->node, bytes);
+    return CLUSTER_OK;
 }
 
 cluster_status kd_tree_split(kd_tree *t, int32_t leaf, int axis, int32_t at, vodr_error *error)

@@ -24,6 +24,7 @@ typedef struct kd_tree {
 /* A tree of one leaf that nobody owns. */
 cluster_status kd_tree_make(const box *all, kd_tree *t, vodr_error *error);
 void kd_tree_free(kd_tree *t);
+cluster_status kd_tree_copy(const kd_tree *from, kd_tree *t, vodr_error *error);
 
 /* Divides a leaf by a plane inside its box or at its side; both halves are its owner's. */
 cluster_status kd_tree_split(kd_tree *t, int32_t leaf, int axis, int32_t at, vodr_error *error);

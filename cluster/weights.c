@@ -11,6 +11,9 @@
 /* What a sub-volume outside the picture costs, of one in its middle: it is held, and may come into sight. */
 static const double least_share = 0.01;
 
+/* How far a measurement moves what is believed, as a power of the ratio: other work on a computer disturbs times. */
+static const double trust = 0.6;
+
 static double seconds(clockid_t clock)
 {
     struct timespec t;
@@ -75,42 +78,61 @@ void weights_fill(const cluster *c, const reference_camera *camera, double *weig
 
 /* ---- measured ---- */
 
-/* Adds up the samples of a leaf's sub-volumes that are not empty; with `share`, sets their seconds to so much a sample.
+/* What a sub-volume of a box is thought to take of the box's time: what it took in the division before, else its
+ * samples.
  */
-static double share_out(const cluster *c, const box *b, const reference_camera *camera, double share, double *seconds)
+static double believed(const cluster *c, const reference_camera *camera, const int32_t at[3])
+{
+    const size_t i = number_of(&c->grid, at);
+    if (!c->occupied[i])
+        return 0;
+    return c->measured && c->measured[i] > 0 ? c->measured[i] : expected(&c->grid, camera, at);
+}
+
+/* Adds up what is believed of a leaf's sub-volumes; with `scale`, sets their seconds to so many times that. */
+static double share_out(const cluster *c, const box *b, const reference_camera *camera, double scale, double *seconds)
 {
     double sum = 0;
     int32_t at[3];
     for (at[2] = b->lo[2]; at[2] < b->hi[2]; at[2]++)
         for (at[1] = b->lo[1]; at[1] < b->hi[1]; at[1]++)
             for (at[0] = b->lo[0]; at[0] < b->hi[0]; at[0]++) {
-                const size_t i = number_of(&c->grid, at);
-                const double samples = c->occupied[i] ? expected(&c->grid, camera, at) : 0;
-                sum += samples;
-                if (share > 0)
-                    seconds[i] = samples * share;
+                const double share = believed(c, camera, at);
+                sum += share;
+                if (scale > 0)
+                    seconds[number_of(&c->grid, at)] = share * scale;
             }
     return sum;
+}
+
+/* Of the boxes of this process, and what its nodes took beside them, which goes with their boxes. */
+static void share_all(const cluster *c, const reference_camera *camera, double *boxes_s, double *seconds)
+{
+    for (int32_t i = 0; i < c->bricks.count; i++)
+        if (c->bricks.brick[i].renderer)
+            boxes_s[c->bricks.brick[i].owner] += c->bricks.brick[i].cpu_s;
+    for (int32_t i = 0; i < c->bricks.count; i++) {
+        const brick *b = &c->bricks.brick[i];
+        if (!b->renderer || b->cpu_s <= 0)
+            continue;
+        const double sum = share_out(c, &c->tree.node[i].box, camera, 0, seconds);
+        const double box_s = b->cpu_s * c->share[b->owner].cpu_s / boxes_s[b->owner];
+        if (sum > 0)
+            share_out(c, &c->tree.node[i].box, camera, c->measured ? pow(box_s / sum, trust) : box_s / sum, seconds);
+    }
 }
 
 cluster_status weights_measure(cluster *c, const reference_camera *camera, vodr_error *error)
 {
     const size_t total = subvolumes_total(c->grid.count);
-    double *seconds = calloc(total, sizeof *seconds);
-    cluster_status status = cluster_agree(c->node, seconds ? CLUSTER_OK : cluster_no_memory(error), error);
-    for (int32_t i = 0; status == CLUSTER_OK && i < c->bricks.count; i++) {
-        const brick *b = &c->bricks.brick[i];
-        if (!b->voxels || b->cpu_s <= 0)
-            continue;
-        const double samples = share_out(c, &c->tree.node[i].box, camera, 0, seconds);
-        if (samples > 0)
-            share_out(c, &c->tree.node[i].box, camera, b->cpu_s / samples, seconds);
-    }
-    if (status == CLUSTER_OK)
+    double *seconds = calloc(total, sizeof *seconds), *boxes_s = calloc((size_t)c->nodes, sizeof *boxes_s);
+    const bool room = seconds && boxes_s;
+    cluster_status status = cluster_agree(c->node, room ? CLUSTER_OK : cluster_no_memory(error), error);
+    if (status == CLUSTER_OK) {
+        share_all(c, camera, boxes_s, seconds);
         status = cluster_reduce(c->node, seconds, total, true, error);
-    for (size_t i = 0; status == CLUSTER_OK && c->measured && i < total; i++)
-        if (c->measured[i] > 0 && seconds[i] > 0)
-            seconds[i] = (seconds[i] + c->measured[i]) / 2;
+    }
+    free(boxes_s);
     free(c->measured);
     c->measured = seconds;
     return status;

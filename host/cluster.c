@@ -18,7 +18,7 @@ static const char *const output_option[OUTPUTS] = {"output", "raw", "stats"};
 typedef struct command_options {
     view_options view;
     reference_wish wish;
-    cluster_options cluster;
+    cluster_wish cluster;
     output_set outputs;
 } command_options;
 
@@ -79,11 +79,11 @@ static host_status prepare(run_state *r, const char *path, host_error *error)
     const command_options *o = r->options;
     vodr_error why;
     host_status status =
-        agree(r->node, cluster_scene_open(path, &o->view, o->cluster.memory_bytes, &r->scene, error), error);
+        agree(r->node, cluster_scene_open(path, &o->view, o->cluster.options.memory_bytes, &r->scene, error), error);
     if (status != HOST_OK)
         return status;
     const cluster_source source = cluster_scene_source(&r->scene);
-    status = told(cluster_open(&o->cluster, &source, r->node, &r->cluster, &why), &why, error);
+    status = told(cluster_open(&o->cluster.options, &source, r->node, &r->cluster, &why), &why, error);
     if (status == HOST_OK)
         status = share_range(r, error);
     if (status == HOST_OK)
@@ -98,7 +98,7 @@ static host_status draw_once(run_state *r, double *seconds, host_error *error)
     const scene *s = &r->scene.scene;
     const reference_march_job *job = &r->scene.job;
     cluster_status status = CLUSTER_OK;
-    if (seconds == NULL || r->options->cluster.weight == CLUSTER_TIME)
+    if (seconds == NULL || r->options->cluster.options.weight == CLUSTER_TIME)
         status = cluster_place(r->cluster, job, s->window_lo, s->window_hi, &why);
     const double begin_s = progress_now_s();
     if (status == CLUSTER_OK && seconds)
@@ -108,17 +108,48 @@ static host_status draw_once(run_state *r, double *seconds, host_error *error)
     return told(status, &why, error);
 }
 
-static host_status draw_all(run_state *r, host_error *error)
+static host_status draw_frames(run_state *r, double *times, host_error *error)
 {
     const int repeat = r->options->outputs.repeat;
-    double *times = malloc((size_t)repeat * sizeof *times);
-    host_status status = draw_once(r, NULL, error);
-    if (status == HOST_OK)
-        status = agree(r->node, times ? HOST_OK : host_fail(error, HOST_ENVIRONMENT, "no memory"), error);
+    host_status status = HOST_OK;
     for (int i = 0; status == HOST_OK && i < repeat; i++)
         status = draw_once(r, &times[i], error);
     if (status == HOST_OK)
         r->result.wall_s = draw_median(times, repeat);
+    return status;
+}
+
+/* Changes to another transfer function. */
+static host_status change(run_state *r, int i, host_error *error)
+{
+    vodr_error why;
+    const command_options *o = r->options;
+    const char *function = o->cluster.then[i];
+    host_status status =
+        agree(r->node, cluster_scene_change(&r->scene, &o->view, function, &o->wish.choice, error), error);
+    if (status != HOST_OK)
+        return status;
+    const scene *s = &r->scene.scene;
+    const double begin_s = progress_now_s();
+    status = told(cluster_change_function(r->cluster, &r->scene.job, s->window_lo, s->window_hi, &why), &why, error);
+    r->result.change[i] = (cluster_changed){function, progress_now_s() - begin_s, cluster_reported(r->cluster)};
+    r->result.changes = i + 1;
+    return status;
+}
+
+static host_status draw_all(run_state *r, host_error *error)
+{
+    double *times = malloc((size_t)r->options->outputs.repeat * sizeof *times);
+    host_status status = draw_once(r, NULL, error);
+    if (status == HOST_OK)
+        status = agree(r->node, times ? HOST_OK : host_fail(error, HOST_ENVIRONMENT, "no memory"), error);
+    if (status == HOST_OK)
+        status = draw_frames(r, times, error);
+    for (int i = 0; status == HOST_OK && i < r->options->cluster.changes; i++) {
+        status = change(r, i, error);
+        if (status == HOST_OK)
+            status = draw_frames(r, times, error);
+    }
     free(times);
     return status;
 }
@@ -147,15 +178,15 @@ static host_status write_one(void *context, int i, output *o, host_error *error)
     case PNG: return image_write_png(o, &r->result.frame, &v->style, error);
     case RAW: return image_write_raw(o, &r->result.frame, error);
     default:
-        return cluster_stats_write(o, &r->scene.scene, v, &r->options->cluster, &r->options->wish.choice, &r->result,
-                                   error);
+        return cluster_stats_write(o, &r->scene.scene, v, &r->options->cluster.options, &r->options->wish.choice,
+                                   &r->result, error);
     }
 }
 
 static void print_summary(const run_state *r)
 {
     const cluster_report *p = &r->result.report;
-    const cluster_options *o = &r->options->cluster;
+    const cluster_options *o = &r->options->cluster.options;
     const reference_choice *choice = &r->options->wish.choice;
     const scene *s = &r->scene.scene;
     uint64_t sent = 0, held = 0;
@@ -174,6 +205,13 @@ static void print_summary(const run_state *r)
     printf("sub-volumes        %lld of %lld of %d voxels a side are not empty\n", (long long)p->occupied,
            (long long)p->subvolumes, o->subvolume_vox);
     printf("load balance       %.4f by count, %.4f by weight, %.4f by time\n", p->lbr, p->lbr_weight, p->lbr_time);
+    for (int i = 0; i < r->result.changes; i++) {
+        const cluster_changed *c = &r->result.change[i];
+        const cluster_change *bytes = &c->report.change;
+        printf("changed to         %s in %.6f s: %llu bytes moved, %llu read, of %llu; load balance %.4f by weight\n",
+               c->transfer, c->seconds, (unsigned long long)bytes->moved_bytes, (unsigned long long)bytes->read_bytes,
+               (unsigned long long)bytes->scatter_bytes, c->report.lbr_weight);
+    }
     text_print_count("held at most", held, " bytes of voxels by a node");
     text_print_count("sent", sent, " bytes of picture");
     printf("time               %.6f s, rendering of the slowest node %.6f s\n", p->frame_s, p->slowest_s);
@@ -209,10 +247,10 @@ static host_status check(run_state *r, command_options *o, const char *path, hos
 static void share_cores(run_state *r, command_options *o)
 {
     const long shared = sysconf(_SC_NPROCESSORS_ONLN) / cluster_local_ranks(r->node);
-    const long cores = o->cluster.nodes > 0 ? 1 : shared;
-    o->cluster.renderer = (reference_options){o->wish.choice.device, o->view.threads, o->view.simd};
+    const long cores = o->cluster.options.nodes > 0 ? 1 : shared;
+    o->cluster.options.renderer = (reference_options){o->wish.choice.device, o->view.threads, o->view.simd};
     if (o->view.threads == 0)
-        o->cluster.renderer.threads = cores > 1 ? (int32_t)cores : 1;
+        o->cluster.options.renderer.threads = cores > 1 ? (int32_t)cores : 1;
 }
 
 static host_status draw_and_write(run_state *r, command_options *o, const char *path, host_error *error)
@@ -247,7 +285,7 @@ static host_status parse_and_draw(run_state *r, int argc, char **argv, host_erro
 {
     command_options options = {.view = view_options_default(),
                                .wish = reference_wish_default(),
-                               .cluster = cluster_options_default(),
+                               .cluster = cluster_wish_default(),
                                .outputs = {.option = output_option, .count = OUTPUTS, .repeat = 1}};
     void *const targets[] = {&options.outputs, &options.cluster,     &options.wish, &options.view,
                              &options.view,    &options.view.volume, &options.view};

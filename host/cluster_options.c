@@ -15,7 +15,7 @@ static host_status set_balance(void *target, const option *o, const char *value,
     int i;
     host_status status = option_word(o, value, balances, "static, octree, paper or best", &i, error);
     if (status == HOST_OK)
-        ((cluster_options *)target)->balance = (cluster_balance)i;
+        ((cluster_wish *)target)->options.balance = (cluster_balance)i;
     return status;
 }
 
@@ -24,7 +24,7 @@ static host_status set_weight(void *target, const option *o, const char *value, 
     int i;
     host_status status = option_word(o, value, weights, "count, samples or time", &i, error);
     if (status == HOST_OK)
-        ((cluster_options *)target)->weight = (cluster_weight)i;
+        ((cluster_wish *)target)->options.weight = (cluster_weight)i;
     return status;
 }
 
@@ -33,7 +33,7 @@ static host_status set_composite(void *target, const option *o, const char *valu
     int i;
     host_status status = option_word(o, value, composites, "direct, binary-swap or radix-k", &i, error);
     if (status == HOST_OK)
-        ((cluster_options *)target)->composite = (cluster_composite)i;
+        ((cluster_wish *)target)->options.composite = (cluster_composite)i;
     return status;
 }
 
@@ -42,7 +42,7 @@ static host_status set_subvolume(void *target, const option *o, const char *valu
     int64_t edge_vox;
     if (!text_integer(value, CLUSTER_LEAST_SUBVOLUME_VOX, CLUSTER_MOST_SUBVOLUME_VOX, &edge_vox))
         return option_refuse(o, value, "an integer from 4 to 64", error);
-    ((cluster_options *)target)->subvolume_vox = (int32_t)edge_vox;
+    ((cluster_wish *)target)->options.subvolume_vox = (int32_t)edge_vox;
     return HOST_OK;
 }
 
@@ -51,7 +51,7 @@ static host_status set_nodes(void *target, const option *o, const char *value, h
     int64_t nodes;
     if (!text_integer(value, 1, CLUSTER_MAX_NODES, &nodes))
         return option_refuse(o, value, "an integer from 1 to 1024", error);
-    ((cluster_options *)target)->nodes = (int32_t)nodes;
+    ((cluster_wish *)target)->options.nodes = (int32_t)nodes;
     return HOST_OK;
 }
 
@@ -61,8 +61,8 @@ static host_status set_network(void *target, const option *o, const char *value,
     if (!text_numbers(value, ',', 2, 2, model) || model[0] < 0 || model[0] > 1e6 || model[1] < 1e-6 || model[1] > 1e6)
         return option_refuse(o, value,
                              "MICROSECONDS,GBIT: a latency from 0 to 1000000, a rate from 0.000001 to 1000000", error);
-    ((cluster_options *)target)->latency_s = model[0] * 1e-6;
-    ((cluster_options *)target)->bytes_per_s = model[1] * 1e9 / 8;
+    ((cluster_wish *)target)->options.latency_s = model[0] * 1e-6;
+    ((cluster_wish *)target)->options.bytes_per_s = model[1] * 1e9 / 8;
     return HOST_OK;
 }
 
@@ -72,7 +72,7 @@ static host_status set_channel(void *target, const option *o, const char *value,
     int i;
     host_status status = option_word(o, value, words, "float or uint16", &i, error);
     if (status == HOST_OK)
-        ((cluster_options *)target)->pixel_bits = i ? 16 : 32;
+        ((cluster_wish *)target)->options.pixel_bits = i ? 16 : 32;
     return status;
 }
 
@@ -81,7 +81,17 @@ static host_status set_memory(void *target, const option *o, const char *value, 
     double mib;
     if (!text_number(value, 0.001, 1e9, &mib))
         return option_refuse(o, value, "a number of MiB from 0.001 to 1000000000", error);
-    ((cluster_options *)target)->memory_bytes = (size_t)(mib * (1 << 20));
+    ((cluster_wish *)target)->options.memory_bytes = (size_t)(mib * (1 << 20));
+    return HOST_OK;
+}
+
+static host_status set_then(void *target, const option *o, const char *value, host_error *error)
+{
+    cluster_wish *w = target;
+    if (w->changes == CLUSTER_CHANGES)
+        return host_fail(error, HOST_BAD_INPUT, "--%s '%.512s': may be given %d times", o->name, value,
+                         CLUSTER_CHANGES);
+    w->then[w->changes++] = value;
     return HOST_OK;
 }
 
@@ -98,6 +108,9 @@ static const option rows[] = {
     {"channel", 0, "TYPE", false, set_channel,
      "float or uint16: colours between nodes; maxima are always\n"
      "floats (float)"},
+    {"then", 0, "NAME|FILE", true, set_then,
+     "change to this transfer function afterwards, as --tf: nodes\n"
+     "exchange what changes owner; output is of the last"},
     {"node-memory", 0, "MIB", false, set_memory, "voxels that a node may hold (no limit)"},
     {"nodes", 0, "N", false, set_nodes, "simulate 1 to 1024 nodes in one process, one after another"},
     {"network", 0, "MICROS,GBIT", false, set_network,
@@ -106,14 +119,14 @@ static const option rows[] = {
 };
 const option_table option_cluster = {"Nodes:", rows, sizeof rows / sizeof *rows};
 
-cluster_options cluster_options_default(void)
+cluster_wish cluster_wish_default(void)
 {
-    return (cluster_options){.balance = CLUSTER_BEST,
-                             .composite = CLUSTER_RADIX_K,
-                             .subvolume_vox = 8,
-                             .pixel_bits = 32,
-                             .latency_s = 20e-6,
-                             .bytes_per_s = 10e9 / 8};
+    return (cluster_wish){.options = {.balance = CLUSTER_BEST,
+                                      .composite = CLUSTER_RADIX_K,
+                                      .subvolume_vox = 8,
+                                      .pixel_bits = 32,
+                                      .latency_s = 20e-6,
+                                      .bytes_per_s = 10e9 / 8}};
 }
 
 host_status cluster_options_check(const reference_wish *wish, const view_options *v, host_error *error)

@@ -7,11 +7,20 @@
 #include "output_set.h"
 #include "reference_options.h"
 
-/* Takes a cluster_options as its target. */
+enum { CLUSTER_CHANGES = 16 };
+
+/* What is asked of a cluster. */
+typedef struct cluster_wish {
+    cluster_options options;
+    const char *then[CLUSTER_CHANGES]; /* transfer functions after the first */
+    int changes;
+} cluster_wish;
+
+/* Takes a cluster_wish as its target. */
 extern const option_table option_cluster;
 
-/* best, count, radix-k, sub-volumes of 8 voxels, floats. */
-cluster_options cluster_options_default(void);
+/* best, count, radix-k, sub-volumes of 8 voxels, floats; no changes. */
+cluster_wish cluster_wish_default(void);
 
 /* Refuses what does not go together. */
 host_status cluster_options_check(const reference_wish *wish, const view_options *v, host_error *error);

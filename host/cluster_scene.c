@@ -192,3 +192,15 @@ host_status cluster_scene_settle(cluster_scene *s, const view_options *options, 
     host_status status = scene_settle(&s->scene, options, !choice->fixed, error);
     return status == HOST_OK ? reference_scene_job(&s->scene, choice, &s->table, &s->job, error) : status;
 }
+
+host_status cluster_scene_change(cluster_scene *s, const view_options *options, const char *function,
+                                 const reference_choice *choice, host_error *error)
+{
+    view_options changed = *options;
+    changed.transfer = function;
+    transfer_close(&s->scene.transfer);
+    s->scene.transfer = (struct transfer){0};
+    free(s->table);
+    s->table = NULL;
+    return cluster_scene_settle(s, &changed, choice, error);
+}

@@ -29,6 +29,10 @@ cluster_source cluster_scene_source(cluster_scene *s);
 host_status cluster_scene_settle(cluster_scene *s, const view_options *options, const reference_choice *choice,
                                  host_error *error);
 
+/* The same for another transfer function, of a settled scene. */
+host_status cluster_scene_change(cluster_scene *s, const view_options *options, const char *function,
+                                 const reference_choice *choice, host_error *error);
+
 /* What a failure of cluster/ is as an exit code. */
 host_status cluster_scene_status(cluster_status status);
 

@@ -106,6 +106,21 @@ static json_t *cluster_object(const cluster_options *o, const cluster_report *r)
                      o->latency_s, "bytes_per_s", o->bytes_per_s);
 }
 
+static json_t *changes(const cluster_result *r)
+{
+    json_t *array = json_array();
+    for (int i = 0; i < r->changes; i++) {
+        const cluster_changed *c = &r->change[i];
+        const cluster_change *bytes = &c->report.change;
+        json_array_append_new(array, json_pack("{s:o, s:f, s:f, s:f, s:I, s:I, s:I}", "tf", json_text(c->transfer),
+                                               "change_s", c->seconds, "lbr", c->report.lbr, "lbr_weight",
+                                               c->report.lbr_weight, "moved_bytes", (json_int_t)bytes->moved_bytes,
+                                               "read_bytes", (json_int_t)bytes->read_bytes, "scatter_bytes",
+                                               (json_int_t)bytes->scatter_bytes));
+    }
+    return array;
+}
+
 static uint64_t total_samples(const cluster_report *r)
 {
     uint64_t total = 0;
@@ -125,9 +140,9 @@ host_status cluster_stats_write(output *o, const scene *s, const view_options *v
                   "method", reference_method_name(choice), "numbers", reference_numbers_name(choice), "slices",
                   (int)s->view.slices, "samples", (json_int_t)total_samples(p), "frame_sha256", r->frame_sha256,
                   "repeat", r->repeat, "wall_s", r->wall_s);
-    json_t *balance = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:o}", "lbr", p->lbr, "lbr_weight", p->lbr_weight,
+    json_t *balance = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:o, s:o}", "lbr", p->lbr, "lbr_weight", p->lbr_weight,
                                 "lbr_time", p->lbr_time, "slowest_s", p->slowest_s, "barrier_share", p->barrier_share,
-                                "frame_s", p->frame_s, "per_rank", per_rank(p));
+                                "frame_s", p->frame_s, "per_rank", per_rank(p), "changes", changes(r));
     if (json_object_update(root, balance) != 0) {
         json_decref(root);
         root = NULL;

@@ -67,8 +67,8 @@ _vodr_value() {
         ;;
     --blend | --traversal) _vodr_values "$1" "${3#--}" ;;
     --filter) if [ "$2" = reference ]; then _vodr_words "$1" "$2" "$3"; else _vodr_values "$1" filter; fi ;;
-    --tf)
-        _vodr_words "$1" "$2" "$3"
+    --tf | --then)
+        _vodr_words "$1" "$2" --tf
         compgen -f -- "$4"
         ;;
     --type | --endian | --plot-type | --device | --method | --numbers | --accel | --shading | --balance | --weight | --composite | --channel) _vodr_words "$1" "$2" "$3" ;;

@@ -66,10 +66,10 @@ for blend in over mip; do
     done
 done
 
-# By time the volume is divided anew after each third frame, and at last as it was best.
+# By time planes move after each eighth frame; at last they lie as they were best.
 # shellcheck disable=SC2086
 {
-    good "7 nodes by time" "$vodr" cluster $raw $perspective --nodes 7 --weight time --repeat 22 -o x.png --stats s.json
+    good "7 nodes by time" "$vodr" cluster $raw $perspective --nodes 7 --weight time --repeat 170 -o x.png --stats s.json
     good "the same picture" "$vodr" compare x.png perspective-over.png --tolerance 1
 }
 
@@ -90,6 +90,38 @@ array() { awk -v key="\"$1\":" '$1 == key && $2 == "[" { inside = 1; next } insi
     equal "the nodes' samples are all" "$(array samples s.json | awk '{ s += $1 } END { print s }')" "$(value samples s.json)"
     good "best" "$vodr" cluster $raw $parallel --nodes 8 --stats b.json
     verdict "best is more even" "$(awk -v a="$(value lbr b.json)" -v b="$lbr" 'BEGIN { if (a <= b) print a, "after", b }')"
+}
+
+# ---- another transfer function ----
+# Steps of a slider: what shows shrinks and grows by little; the last function is the first of all the other checks.
+for step in 1 2 3; do
+    printf '0 1 1 1 0\n%d 1 0.5 0.2 0\n120 0.2 0.8 1 0.1\n255 1 1 1 0.6\n' $((40 - 8 * step)) >step$step
+done
+then="${parallel#--tf tf} --tf step3 --then step2 --then step1 --then tf"
+# little FILE: each change moved and read at most a fifth of a scatter's bytes, and some moved something
+little() {
+    awk '/"moved_bytes"/ { moved = $2 + 0; all += moved } /"read_bytes"/ { read = $2 + 0 } /"scatter_bytes"/ { n++; if (moved + read > 0.2 * $2) print "moved", moved, "read", read, "of", $2 }
+        END { if (n != 3 || all == 0) print n, "changes moved", all, "bytes" }' "$1"
+}
+# shellcheck disable=SC2086
+for blend in over mip; do
+    good "changes, $blend" "$vodr" cluster $raw $then --subvolume 4 --nodes 5 --blend $blend -o x.png --raw x.rgba --stats s.json
+    alike "the last function's picture" parallel $blend
+    verdict "changes move little" "$(little s.json)"
+done
+# shellcheck disable=SC2086
+for balance in static octree paper; do
+    good "changes, $balance" "$vodr" cluster $raw $then --nodes 5 --balance $balance -o x.png
+    alike "the last function's picture" parallel over
+done
+# shellcheck disable=SC2086
+{
+    good "changes, no room for old and new" "$vodr" cluster $raw $then --subvolume 4 --nodes 8 --node-memory 0.01 -o x.png --stats s.json
+    alike "the last function's picture" parallel over
+    verdict "all is read anew" "$(grep -E '"(moved|read)_bytes": [1-9]' s.json)"
+    good "a function that hides all, and back" "$vodr" cluster $raw $parallel --then hides.tf --then tf --nodes 5 -o x.png
+    alike "the last function's picture" parallel over
+    bad 2 "none.tf" "$vodr" cluster $raw --then none.tf
 }
 
 # ---- what shows nothing, or hardly anything ----
@@ -186,8 +218,11 @@ END
     good "float voxels, gradient lighting" "$vodr" reference v.raw --dims 20x11x30 --type float32 --shading phong -o y.png
     good "the same, 3 processes" ranks 3 "$vodr" cluster v.raw --dims 20x11x30 --type float32 --shading phong -o x.png
     good "the same picture" "$vodr" compare x.png y.png --tolerance 1
-    good "3 processes by time" ranks 3 "$vodr" cluster $raw $perspective --weight time --repeat 22 -o x.png
+    good "3 processes by time" ranks 3 "$vodr" cluster $raw $perspective --weight time --repeat 170 -o x.png
     good "the same picture" "$vodr" compare x.png perspective-over.png --tolerance 1
+    good "changes, 5 processes" ranks 5 "$vodr" cluster $raw $then --subvolume 4 -o x.png --stats s.json
+    alike "the last function's picture" parallel over
+    verdict "changes move little" "$(little s.json)"
     good "more processes than sub-volumes" ranks 5 "$vodr" cluster small.raw --dims 3x3x3 --raw x.rgba
     ends 2 "vodr: none.nrrd: " ranks 3 "$vodr" cluster none.nrrd -o x.png
     ends 2 "vodr: --balance 'even'" ranks 3 "$vodr" cluster $raw --balance even -o x.png

@@ -106,6 +106,28 @@ static int owners(const kd_tree *t, const int32_t at[3])
     return found;
 }
 
+/* The owner of a sub-volume. */
+static int32_t owner_of(const kd_tree *t, const int32_t at[3])
+{
+    int32_t i = 0;
+    while (t->node[i].axis != KD_LEAF)
+        i = t->node[i].child[at[t->node[i].axis] >= t->node[i].at];
+    return t->node[i].owner;
+}
+
+/* What has another owner in one tree than in another. */
+static double moved_weight(const field *f, const kd_tree *a, const kd_tree *b)
+{
+    int32_t at[3];
+    size_t i = 0;
+    double sum = 0;
+    for (at[2] = 0; at[2] < f->count[2]; at[2]++)
+        for (at[1] = 0; at[1] < f->count[1]; at[1]++)
+            for (at[0] = 0; at[0] < f->count[0]; at[0]++, i++)
+                sum += owner_of(a, at) != owner_of(b, at) ? f->occupied[i] : 0;
+    return sum;
+}
+
 /* Each sub-volume that is not empty has one owner, others at most one. */
 static void check_cover(const field *f, const kd_tree *t)
 {
@@ -134,7 +156,7 @@ static void test_cover(void **state)
             const box all = sums_all(&f.sums);
             assert_int_equal(balance_make(methods[m], &in, &t, &error), CLUSTER_OK);
             check_cover(&f, &t);
-            balance_leaves(&t, in.nodes, parts);
+            balance_leaves(&t, &f.sums, in.nodes, parts);
             balance_total(&t, &f.sums, in.nodes, total);
             for (int i = 0; i < in.nodes; i++) {
                 assert_true(parts[i] <= (methods[m] == CLUSTER_BEST ? BALANCE_PARTS : 1));
@@ -195,6 +217,61 @@ static void test_best_is_even(void **state)
     assert_true(balance_ratio((double[]){3, 4, 2}, 3) == 0.5);
     assert_true(balance_ratio((double[]){3, 0}, 2) == 0);
     assert_true(balance_ratio((double[]){0, 0}, 2) == 0);
+}
+
+/* Sub-volumes that were not empty weigh more the farther they are along an axis, and some that were become occupied. */
+static field other_weights(rng *r, const field *f)
+{
+    field g = *f;
+    vodr_error error;
+    const size_t total = subvolumes_total(f->count);
+    const double slope = rng_real(r, 0, 0.3);
+    g.occupied = malloc(total * sizeof *g.occupied);
+    for (size_t i = 0; i < total; i++) {
+        const double x = (double)(i % (size_t)f->count[0]);
+        g.occupied[i] = f->occupied[i] > 0 ? 1 + slope * x : rng_one_in(r, 6);
+    }
+    assert_int_equal(sums_make(g.count, g.occupied, &g.sums, &error), CLUSTER_OK);
+    return g;
+}
+
+/* A division carried over to other weights covers what they cover, is more even than it was, and keeps most in place.
+ */
+static void test_adjust(void **state)
+{
+    (void)state;
+    vodr_error error;
+    rng r = {17};
+    double moved = 0, sum = 0;
+    for (int n = 0; n < 60; n++) {
+        field f = random_field(&r), g = other_weights(&r, &f);
+        const int32_t nodes = (int32_t)rng_int(&r, 1, 16);
+        const balance_input in = {&f.sums, &f.sums, nodes}, now = {&g.sums, &g.sums, nodes};
+        const box all = sums_all(&f.sums);
+        kd_tree t, before;
+        double total[16], ratio;
+        int32_t parts[16];
+        assert_int_equal(balance_make(CLUSTER_BEST, &in, &t, &error), CLUSTER_OK);
+        balance_widen(&t, &all);
+        assert_int_equal(kd_tree_copy(&t, &before, &error), CLUSTER_OK);
+        check_cover(&g, &t);
+        balance_total(&t, &g.sums, nodes, total);
+        ratio = balance_ratio(total, nodes);
+        assert_int_equal(balance_adjust(&now, 0.95, &t, &error), CLUSTER_OK);
+        check_cover(&g, &t);
+        balance_total(&t, &g.sums, nodes, total);
+        assert_true(balance_ratio(total, nodes) >= ratio || balance_ratio(total, nodes) >= 0.95);
+        balance_leaves(&t, &g.sums, nodes, parts);
+        for (int i = 0; i < nodes; i++)
+            assert_true(parts[i] <= BALANCE_PARTS);
+        moved += moved_weight(&g, &before, &t);
+        sum += sums_of(&g.sums, &all);
+        kd_tree_free(&t);
+        kd_tree_free(&before);
+        free_field(&f);
+        free_field(&g);
+    }
+    assert_true(moved > 0 && moved < 0.3 * sum);
 }
 
 /* ---- the order of sight ---- */
@@ -376,9 +453,9 @@ static void test_schedule(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_empty),        cmocka_unit_test(test_cover),    cmocka_unit_test(test_plane),
-        cmocka_unit_test(test_best_is_even), cmocka_unit_test(test_order),    cmocka_unit_test(test_footprint),
-        cmocka_unit_test(test_composite),    cmocka_unit_test(test_schedule),
+        cmocka_unit_test(test_empty),        cmocka_unit_test(test_cover),     cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_best_is_even), cmocka_unit_test(test_adjust),    cmocka_unit_test(test_order),
+        cmocka_unit_test(test_footprint),    cmocka_unit_test(test_composite), cmocka_unit_test(test_schedule),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
