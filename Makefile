@@ -60,13 +60,15 @@ MIP      := bench/record/mip_frames bench/record/mip_case bench/record/stand_in 
 # The same of bench/cubic_frames.
 CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch \
             host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
+# The same of bench/aligned_frames.
+ALIGNED  := $(patsubst bench/record/cubic_frames,bench/record/aligned_frames,$(CUBIC))
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
-SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/cardinal bench/mip bench/model bench/peers-lib bench/reference .ci/run
+SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/aligned bench/cardinal bench/mip bench/model bench/peers-lib bench/reference bench/teem-lib .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-mip bench-cardinal bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
+.PHONY: all help deps demo check check-long tests table-vodr table-cycles table-balance bench bench-cosim bench-model bench-reference bench-mip bench-cardinal bench-aligned bench-sweep cosim-long vectors findings contact-sheet crosscheck coverage verification fuzz lint format docs synth prove mutation clean
 
 all: $(BUILD)/libreference.a $(BUILD)/vodr $(if $(MPICC),$(BUILD)/vodr-mpi.so) ## build build/vodr
 
@@ -172,6 +174,11 @@ bench-cardinal: ## measure the cubic filters on the CPU, and teem's, and write d
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/cubic_frames $(BUILD)/bench/teem_frames
 	@scripts/tables $(BUILD) cardinal
 	@cat $(BUILD)/tables/cardinal
+
+bench-aligned: ## measure the thread-aligned projection on the CPU, and write docs/table-aligned.md again, with the newest record of a card
+	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/aligned_frames $(BUILD)/bench/teem_frames
+	@scripts/tables $(BUILD) aligned
+	@cat $(BUILD)/tables/aligned
 
 bench-sweep: $(BUILD)/vodr $(BUILD)/bench/sweep_rate ## measure what `vodr sweep` adds to the drawing itself, and write it in docs/sweep.md again
 	@scripts/tables $(BUILD) sweep
@@ -303,6 +310,9 @@ $(BUILD)/bench/mip_frames: $(MIP:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
 $(BUILD)/bench/cubic_frames: $(CUBIC:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
+
+$(BUILD)/bench/aligned_frames: $(ALIGNED:%=$(BUILD)/%.o) $(BUILD)/libreference.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(CUDA_LIBRARIES) -lm -pthread
 
 $(BUILD)/bench/teem_frames: $(BUILD)/bench/record/teem_frames.o $(BUILD)/bench/lib/stopwatch.o $(BUILD)/libreference.a $(BUILD)/libvodr.a

@@ -1,13 +1,17 @@
 /* texture_ceiling.cu - what a card's texture unit gives at most: nothing but tex3D along rays, the greatest kept; and
  * ways to do without it, in exact float. A line a kernel and view, in JSON: G samples/s, median, least and greatest.
  *
- *   texture_ceiling [SIDE_VOX [SIZE_PX [SAMPLES [ROUNDS]]]]    512 1024 512 9 */
+ *   texture_ceiling [SIDE_VOX [SIZE_PX [SAMPLES [ROUNDS [ONLY]]]]]    512 1024 512 9; ONLY: one kernel's name
+ *
+ * `eight-fetch` is the cubic B-spline as eight trilinear fetches (Sigg and Hadwiger, GPU Gems 2, chapter 20), whose weights
+ * have the texture unit's 8 bits. */
 #include <algorithm>
 #include <cuda_runtime.h>
 #include <numeric>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <vector>
 
 /* A frame of rays: sample n of pixel (x, y) lies at start + x*across + y*down + n*step, in voxels. */
@@ -37,6 +41,32 @@ struct by_texture {
     static __device__ __forceinline__ float at(const source &s, int, float x, float y, float z)
     {
         return tex3D<float>(s.texture, x, y, z);
+    }
+};
+
+/* Along an axis: where the two fetches lie, and the weight of the second. */
+static __device__ __forceinline__ float eight_axis(float p, float at[2])
+{
+    float first = floorf(p - 0.5f), t = p - 0.5f - first, u = 1 - t;
+    float w0 = u * u * u / 6, w1 = 2 / 3.0f - t * t * (1 - t / 2), w2 = 2 / 3.0f - u * u * (1 - u / 2), w3 = t * t * t / 6;
+    at[0] = first - 0.5f + w1 / (w0 + w1);
+    at[1] = first + 1.5f + w3 / (w2 + w3);
+    return w2 + w3;
+}
+
+struct by_eight {
+    static constexpr float columns = 1023; /* of a value */
+    static __device__ __forceinline__ float at(const source &s, int, float x, float y, float z)
+    {
+        float ax[2], ay[2], az[2], u = eight_axis(x, ax), v = eight_axis(y, ay), w = eight_axis(z, az), layer[2];
+#pragma unroll
+        for (int k = 0; k < 2; k++) {
+            float a = tex3D<float>(s.texture, ax[0], ay[0], az[k]), b = tex3D<float>(s.texture, ax[1], ay[0], az[k]);
+            float c = tex3D<float>(s.texture, ax[0], ay[1], az[k]), d = tex3D<float>(s.texture, ax[1], ay[1], az[k]);
+            float near = a + (b - a) * u, far = c + (d - c) * u;
+            layer[k] = near + (far - near) * v;
+        }
+        return layer[0] + (layer[1] - layer[0]) * w;
     }
 };
 
@@ -311,25 +341,42 @@ static int argument(int argc, char **argv, int i, int fallback)
     return argc > i ? atoi(argv[i]) : fallback;
 }
 
+static bool wanted(const char *only, const char *name)
+{
+    return only[0] == 0 || strcmp(only, name) == 0;
+}
+
 int main(int argc, char **argv)
 {
     int side = argument(argc, argv, 1, 512), size = argument(argc, argv, 2, 1024);
     int samples = argument(argc, argv, 3, 512), rounds = argument(argc, argv, 4, 9);
     if (side < 2 || side > 1024 || size < 1 || size > 8192 || samples < 1 || rounds < 1) {
-        fprintf(stderr, "usage: texture_ceiling [SIDE_VOX [SIZE_PX [SAMPLES [ROUNDS]]]]\n");
+        fprintf(stderr, "usage: texture_ceiling [SIDE_VOX [SIZE_PX [SAMPLES [ROUNDS [ONLY]]]]]\n");
         return 2;
     }
+    const char *only = argc > 5 ? argv[5] : "";
     source s = make_source(side);
     float *out;
     unsigned *counts;
     must(cudaMalloc(&counts, (size_t)size * size * sizeof *counts), "cudaMalloc");
     must(cudaMalloc(&out, (size_t)size * size * sizeof *out), "cudaMalloc");
-    measure<by_texture, false>("tex3D", s, side, size, samples, rounds, out, counts);
-    measure<by_texture, true>("tex3D", s, side, size, samples, rounds, out, counts);
-    measure<by_corners, false>("corners", s, side, size, samples, rounds, out, counts);
-    measure<by_corners, true>("corners", s, side, size, samples, rounds, out, counts);
-    measure<by_quads, false>("quads", s, side, size, samples, rounds, out, counts);
-    measure<by_quads, true>("quads", s, side, size, samples, rounds, out, counts);
-    measure<by_bytes, false>("bytes", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "tex3D"))
+        measure<by_texture, false>("tex3D", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "tex3D"))
+        measure<by_texture, true>("tex3D", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "corners"))
+        measure<by_corners, false>("corners", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "corners"))
+        measure<by_corners, true>("corners", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "quads"))
+        measure<by_quads, false>("quads", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "quads"))
+        measure<by_quads, true>("quads", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "bytes"))
+        measure<by_bytes, false>("bytes", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "eight-fetch"))
+        measure<by_eight, false>("eight-fetch", s, side, size, samples, rounds, out, counts);
+    if (wanted(only, "eight-fetch"))
+        measure<by_eight, true>("eight-fetch", s, side, size, samples, rounds, out, counts);
     return 0;
 }

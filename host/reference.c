@@ -37,6 +37,9 @@ static void add_stats(reference_result *r, const reference_stats *s)
 {
     r->samples = s->samples;
     r->preprocess_ms += s->preprocess_ms;
+    r->copies = s->copies;
+    r->theta_deg = s->theta_deg;
+    r->turn_ms = s->turn_ms;
 }
 
 static host_status draw_all(const reference_scene *drawing, reference_result *r, double *times_s, double *kernel_ms,
@@ -73,6 +76,8 @@ static host_status draw_scene(scene *s, const command_options *options, referenc
         r->kernel_ms = draw_median(times + r->repeat, r->repeat);
     }
     free(times);
+    if (status == HOST_OK && options->wish.choice.accel == REFERENCE_ACCEL_ALIGNED_PAPER)
+        status = reference_scene_psnr(&drawing, &r->psnr_db, error);
     reference_scene_close(&drawing);
     return status == HOST_OK ? digest_frame(&r->frame, r->frame_sha256, error) : status;
 }
@@ -96,6 +101,19 @@ static host_status write_one(void *context, int i, output *o, host_error *error)
     }
 }
 
+/* What alignment came to. */
+static void print_alignment(const reference_choice *c, const reference_result *r)
+{
+    const bool no_room =
+        r->copies == 1 && c->copies != 1 && (c->device == REFERENCE_CUDA || c->accel == REFERENCE_ACCEL_ALIGNED_PAPER);
+    if (r->copies > 0)
+        printf("coefficients       %d %s%s\n", r->copies, r->copies == 1 ? "copy" : "copies",
+               no_room ? ": there is no room for three" : "");
+    if (c->accel == REFERENCE_ACCEL_ALIGNED_PAPER)
+        printf("turned             by %.3f degrees, and back: PSNR %.2f dB against the usual frame\n", r->theta_deg,
+               r->psnr_db);
+}
+
 static void print_summary(const command_options *options, const scene *s, const reference_result *r)
 {
     const reference_choice *c = &options->wish.choice;
@@ -108,6 +126,7 @@ static void print_summary(const command_options *options, const scene *s, const 
     printf("numbers            %s%s%s\n", reference_numbers_name(c),
            c->fixed ? ", machine " : ", empty space: ", c->fixed ? s->machine_name : reference_accel_name(c));
     printf("filter             %s\n", reference_filter_name(c, s));
+    print_alignment(c, r);
     printf("device             %s\n", r->device);
     text_print_count("samples", r->samples, "");
     printf("time               %.6f s, %.1f million samples a second\n", r->wall_s, reference_samples_per_s(r) / 1e6);

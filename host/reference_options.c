@@ -14,10 +14,18 @@ static const char *const numbers[] = {[REFERENCE_FLOAT] = "float",
                                       [REFERENCE_TEXTURE] = "texture",
                                       [FIXED] = "fixed",
                                       NULL};
-static const char *const accels[] = {[REFERENCE_ACCEL_NONE] = "none",     [REFERENCE_ACCEL_BLOCK] = "block",
-                                     [REFERENCE_ACCEL_BISECT] = "bisect", [REFERENCE_ACCEL_SEED] = "seed",
-                                     [REFERENCE_ACCEL_BEST] = "best",     [REFERENCE_ACCEL_RIVAL] = "rival",
-                                     [REFERENCE_ACCEL_HULL] = "hull",     NULL};
+static const char *const accels[] = {[REFERENCE_ACCEL_NONE] = "none",
+                                     [REFERENCE_ACCEL_BLOCK] = "block",
+                                     [REFERENCE_ACCEL_BISECT] = "bisect",
+                                     [REFERENCE_ACCEL_SEED] = "seed",
+                                     [REFERENCE_ACCEL_BEST] = "best",
+                                     [REFERENCE_ACCEL_RIVAL] = "rival",
+                                     [REFERENCE_ACCEL_HULL] = "hull",
+                                     [REFERENCE_ACCEL_ALIGNED] = "aligned",
+                                     [REFERENCE_ACCEL_ALIGNED_BEST] = "aligned-best",
+                                     [REFERENCE_ACCEL_ALIGNED_PAPER] = "aligned-paper",
+                                     NULL};
+static const char *const thetas[] = {[REFERENCE_THETA_BOX] = "box", [REFERENCE_THETA_PLANE] = "plane", NULL};
 static const char *const filters[] = {[REFERENCE_NEAREST] = "nearest",
                                       [REFERENCE_LINEAR] = "linear",
                                       [REFERENCE_CARDINAL] = "cardinal",
@@ -59,11 +67,34 @@ static host_status set_accel(void *target, const option *o, const char *value, h
 {
     int i;
     reference_wish *w = target;
-    host_status status = option_word(o, value, accels, "none, block, bisect, seed, best, rival or hull", &i, error);
+    host_status status =
+        option_word(o, value, accels,
+                    "none, block, bisect, seed, best, rival, hull, aligned, aligned-best or aligned-paper", &i, error);
     if (status != HOST_OK)
         return status;
     w->choice.accel = (reference_accel)i;
     w->has_accel = true;
+    return HOST_OK;
+}
+
+static host_status set_theta(void *target, const option *o, const char *value, host_error *error)
+{
+    int i;
+    reference_wish *w = target;
+    host_status status = option_word(o, value, thetas, "box or plane", &i, error);
+    if (status != HOST_OK)
+        return status;
+    w->choice.theta = (reference_theta)i;
+    w->has_theta = true;
+    return HOST_OK;
+}
+
+static host_status set_copies(void *target, const option *o, const char *value, host_error *error)
+{
+    int64_t copies;
+    if (!text_integer(value, 1, 3, &copies) || copies == 2)
+        return option_refuse(o, value, "1 or 3", error);
+    ((reference_wish *)target)->choice.copies = (int32_t)copies;
     return HOST_OK;
 }
 
@@ -131,10 +162,21 @@ static const option rows[] = {
      "byte; texture has weights of 8 bits, as a card's texture\n"
      "unit"},
     {"accel", 0, "ACCEL", false, set_accel,
-     "none, block, bisect, seed, best, rival, hull (best)\n"
+     "none, block, bisect, seed, best, rival, hull, aligned,\n"
+     "aligned-best, aligned-paper (best)\n"
      "how what does not show is passed over; the picture is\n"
      "the same; bisect and seed are of mip, rival and hull of\n"
-     "cubic filters, which have none and best beside"},
+     "cubic filters, which have none and best beside; aligned\n"
+     "and aligned-best are none and best of bspline, reading\n"
+     "memory in an order that suits the view; aligned-paper\n"
+     "turns the picture for it and back, which rounds it"},
+    {"theta", 0, "THETA", false, set_theta,
+     "box or plane (box)\n"
+     "what aligned-paper turns the picture for, neighbours on\n"
+     "the volume's face or in the image"},
+    {"copies", 0, "N", false, set_copies,
+     "1 or 3 (3 where there is room)\n"
+     "of the coefficients, for the aligned accels"},
     {"filter", 0, "FILTER", false, set_filter,
      "nearest, linear, cardinal, bspline (linear)\n"
      "cardinal and bspline weight 64 voxels, by Catmull and\n"
@@ -184,7 +226,15 @@ static host_status refuse_cubic(const reference_wish *w, host_error *error)
     if (w->has_accel && !reference_accel_suits(c->accel, REFERENCE_MIP, cubic ? c->filter : REFERENCE_LINEAR))
         return host_fail(error, HOST_BAD_INPUT, "--accel %s does not go with filter=%s, which has %s", accels[c->accel],
                          filters[cubic ? c->filter : REFERENCE_LINEAR],
-                         cubic ? "none, best, rival, hull" : "none, block, bisect, seed, best");
+                         c->filter == REFERENCE_BSPLINE
+                             ? "none, best, rival, hull, aligned, aligned-best, aligned-paper"
+                         : cubic ? "none, best, rival, hull"
+                                 : "none, block, bisect, seed, best");
+    if (w->has_theta && c->accel != REFERENCE_ACCEL_ALIGNED_PAPER)
+        return host_fail(error, HOST_BAD_INPUT, "--theta goes with --accel aligned-paper: no other turns the picture");
+    if (c->copies != 0 && !reference_accel_is_aligned(c->accel))
+        return host_fail(error, HOST_BAD_INPUT,
+                         "--copies goes with --accel aligned, aligned-best and aligned-paper: no other has any");
     return HOST_OK;
 }
 

@@ -9,7 +9,7 @@
 typedef struct reference_wish {
     reference_choice choice;
     const char *machine_filter; /* of --filter, where it is one of the machine's; NULL: not given */
-    bool has_accel, has_step, has_block, has_shading, has_termination; /* given on the command line */
+    bool has_accel, has_step, has_block, has_shading, has_termination, has_theta; /* given on the command line */
 } reference_wish;
 
 /* Takes a reference_wish as its target. */

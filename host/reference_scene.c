@@ -129,6 +129,8 @@ host_status reference_scene_job(const scene *s, const reference_choice *c, doubl
         .filter = reference_scene_filter(s, c),
         .shading = c->shading,
         .accel = c->accel,
+        .theta = c->theta,
+        .copies = c->copies,
         .block_vox = c->block_vox,
         .termination = c->termination < 1 ? c->termination : 2,
         .window_scale = width > 0 ? scale / width : 0,
@@ -205,4 +207,32 @@ host_status reference_scene_draw(const reference_scene *r, vodr_frame *frame, re
     if (status == REFERENCE_OK)
         return HOST_OK;
     return host_fail(error, reference_scene_status(status), "%s", reason.text);
+}
+
+static reference_status compare_usual(const reference_scene *r, double *rgba, size_t channels, double *psnr_db,
+                                      vodr_error *reason)
+{
+    reference_stats stats;
+    reference_march_job usual = r->job;
+    double squares = 0;
+    usual.accel = REFERENCE_ACCEL_BEST;
+    reference_status status = reference_march(r->renderer, &r->job, rgba, &stats, reason);
+    if (status == REFERENCE_OK)
+        status = reference_march(r->renderer, &usual, rgba + channels, &stats, reason);
+    for (size_t i = 0; status == REFERENCE_OK && i < channels; i++)
+        squares += (rgba[i] - rgba[i + channels]) * (rgba[i] - rgba[i + channels]);
+    *psnr_db = squares > 0 ? 10 * log10((double)channels / squares) : INFINITY;
+    return status;
+}
+
+host_status reference_scene_psnr(const reference_scene *r, double *psnr_db, host_error *error)
+{
+    const size_t channels = 4 * (size_t)r->job.camera.width_px * (size_t)r->job.camera.height_px;
+    double *rgba = malloc(2 * channels * sizeof *rgba);
+    vodr_error reason;
+    if (!rgba)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for two frames");
+    host_status status = reference_scene_status(compare_usual(r, rgba, channels, psnr_db, &reason));
+    free(rgba);
+    return status == HOST_OK ? status : host_fail(error, status, "%s", reason.text);
 }

@@ -17,6 +17,8 @@ typedef struct reference_choice {
     reference_accel accel;
     reference_filter filter; /* a cubic; else the machine's is drawn with */
     reference_shading shading;
+    reference_theta theta;
+    int32_t copies;  /* as of reference_march_job */
     double step_vox; /* raycast: finest voxels between samples */
     int32_t block_vox;
     double termination; /* a ray ends at this opacity; 1: never */
@@ -49,6 +51,10 @@ void reference_scene_close(reference_scene *r);
 /* Draws a frame of the machine's fb_bits, to be freed by vodr_frame_free(). */
 host_status reference_scene_draw(const reference_scene *r, vodr_frame *frame, reference_stats *stats,
                                  host_error *error);
+
+/* Decibels of the scene's frame, not quantised, against that of `best`, over all channels of all pixels: INFINITY where
+ * none differs. Draws both. */
+host_status reference_scene_psnr(const reference_scene *r, double *psnr_db, host_error *error);
 
 /* The filter that a scene is drawn with. */
 reference_filter reference_scene_filter(const scene *s, const reference_choice *c);

@@ -1,6 +1,8 @@
 /* reference_stats.c - what a frame of the reference renderer took, as JSON (--stats). */
 #include "reference_stats.h"
 
+#include <math.h>
+
 #include "json.h"
 #include "stats.h"
 
@@ -17,13 +19,16 @@ static json_t *real_or_null(bool there, double value)
 
 static json_t *reference_object(const scene *s, const reference_choice *c, const reference_result *r)
 {
-    const bool skips = c->accel != REFERENCE_ACCEL_NONE;
-    return json_pack("{s:s, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:s, s:o}", "device", reference_device_word(c),
-                     "device_name", json_text(r->device), "method", reference_method_name(c), "numbers",
-                     reference_numbers_name(c), "accel", reference_accel_name(c), "filter", reference_filter_name(c, s),
-                     "step_vox", real_or_null(c->method == REFERENCE_RAYCAST, c->step_vox), "block_vox",
-                     skips ? json_integer(c->block_vox) : json_null(), "shading", reference_shading_name(c),
-                     "termination", real_or_null(!c->fixed, c->termination));
+    const bool skips = c->accel != REFERENCE_ACCEL_NONE, turned = c->accel == REFERENCE_ACCEL_ALIGNED_PAPER;
+    return json_pack("{s:s, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:s, s:o, s:o, s:o, s:o, s:o}", "device",
+                     reference_device_word(c), "device_name", json_text(r->device), "method", reference_method_name(c),
+                     "numbers", reference_numbers_name(c), "accel", reference_accel_name(c), "filter",
+                     reference_filter_name(c, s), "step_vox", real_or_null(c->method == REFERENCE_RAYCAST, c->step_vox),
+                     "block_vox", skips ? json_integer(c->block_vox) : json_null(), "shading",
+                     reference_shading_name(c), "termination", real_or_null(!c->fixed, c->termination), "copies",
+                     r->copies > 0 ? json_integer(r->copies) : json_null(), "theta_deg",
+                     real_or_null(turned, r->theta_deg), "turn_ms", real_or_null(turned, r->turn_ms), "psnr_db",
+                     real_or_null(turned && isfinite(r->psnr_db), r->psnr_db));
 }
 
 host_status reference_stats_write(output *o, const scene *s, const view_options *v, const reference_choice *c,

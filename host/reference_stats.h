@@ -15,6 +15,9 @@ typedef struct reference_result {
     double wall_s;        /* median of the repetitions: all but loading and preprocessing */
     double kernel_ms;     /* the same of the kernel alone */
     double preprocess_ms; /* what was derived of the volume alone, once */
+    int32_t copies;       /* these as of reference_stats */
+    double theta_deg, turn_ms;
+    double psnr_db; /* aligned-paper: against the usual frame */
     int repeat;
     char frame_sha256[DIGEST_CHARS];
 } reference_result;

@@ -4,8 +4,8 @@
 
 #include "kernel_types.h"
 
-/* Draws the rows [y0, y1) into rgba, whose rows are the frame's; adds to *samples. */
-typedef void cpu_march_rows(const kernel_frame *f, int32_t y0, int32_t y1, double *rgba, uint64_t *samples);
+/* Draws the rows [j0, j1) of the frame's order into rgba, whose rows are the frame's; adds to *samples. */
+typedef void cpu_march_rows(const kernel_frame *f, int32_t j0, int32_t j1, double *rgba, uint64_t *samples);
 
 /* The rows a call is best given are multiples of this. */
 enum { CPU_TILE_PX = 4 };
@@ -15,6 +15,7 @@ typedef struct cpu_kernels {
     bool cells; /* KERNEL_CELLS and nothing else, but in KERNEL_SEARCH KERNEL_LINEAR; or each other filter,
                    KERNEL_LINEAR to the same bytes */
     cpu_march_rows *march[KERNEL_MODES];
+    bool quads; /* KERNEL_CUBIC reads KERNEL_QUADS */
 } cpu_kernels;
 
 /* Portable kernels; and, on x86-64, those of an instruction set. */

@@ -9,6 +9,8 @@
 
 typedef struct cubic_cuda {
     float *coefficients; /* NULL until a frame needs them */
+    float *copy[3];      /* KERNEL_WIDE, sorted by each axis; likewise */
+    int32_t copies;      /* 3, or 1 where three had no room; 0 until a frame needs them */
     uint16_t *codes;     /* of cells; likewise */
     hull_scale scale;
     bool has_scale;
@@ -91,6 +93,43 @@ static void cubic_start_prefilter(const reference_volume *v, const void *voxels,
     }
     cubic_start_axis(coefficients, v->dims_vox, 1, spare);
     cubic_start_axis(spare, v->dims_vox, 2, coefficients);
+}
+
+/* ---- copies ---- */
+
+/* The sizes of a copy along its axes, which are those of the volume from first_axis on. */
+static inline bounds_box cubic_wide(const int32_t dims_vox[3], int first_axis)
+{
+    bounds_box wide;
+    for (int a = 0; a < 3; a++)
+        wide.size[a] = dims_vox[(first_axis + a) % 3] + 2 * LAYOUT_MARGIN_VOX;
+    return wide;
+}
+
+template <int first_axis>
+static __global__ void cubic_sort(const float *in, bounds_box size, bounds_box wide, float *out)
+{
+    int32_t at[3], from[3];
+    if (!bounds_place(wide, at))
+        return;
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        const int axis = (first_axis + a) % 3;
+        from[axis] = min(max(at[a] - LAYOUT_MARGIN_VOX, 0), size.size[axis] - 1);
+    }
+    out[bounds_index(wide, at)] = in[bounds_index(size, from)];
+}
+
+static void cubic_start_sort(const float *coefficients, const int32_t dims_vox[3], int first_axis, float *out)
+{
+    const bounds_box size = bounds_box_of(dims_vox), wide = cubic_wide(dims_vox, first_axis);
+    const unsigned grid = bounds_grid(wide.size);
+    if (first_axis == 0)
+        cubic_sort<0><<<grid, BOUNDS_THREADS>>>(coefficients, size, wide, out);
+    else if (first_axis == 1)
+        cubic_sort<1><<<grid, BOUNDS_THREADS>>>(coefficients, size, wide, out);
+    else
+        cubic_sort<2><<<grid, BOUNDS_THREADS>>>(coefficients, size, wide, out);
 }
 
 /* ---- extremes ---- */

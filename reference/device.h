@@ -10,9 +10,17 @@ extern "C" {
 
 enum { DEVICE_NAME_CHARS = 160 };
 
+/* How the coefficients of B-splines are to lie for a frame: in whichever way suits the device and the axis of
+ * neighbours; with `sorted` in a copy in which that axis is the fastest. */
+typedef struct device_alignment {
+    bool wanted, sorted;
+    int32_t fast_axis, copies; /* as of reference_march_job */
+} device_alignment;
+
 /* A frame to march: every pointer lies in the host's memory. */
 typedef struct device_march {
     kernel_frame frame;
+    device_alignment alignment;
     reference_numbers numbers;
     kernel_mode mode;
 } device_march;

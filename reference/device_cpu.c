@@ -1,14 +1,18 @@
 /* device_cpu.c - the CPU as a device: bands of rows, or of layers, dealt out to threads. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "bounds.h"
 #include "cells.h"
 #include "cpu_cubic.h"
 #include "cpu_job.h"
+#include "cpu_layout.h"
 #include "kernel_fixed.h"
 #include "pages.h"
+
+enum { ALIGNED_BAND = 4 * BAND };
 
 typedef struct cpu_state {
     int32_t threads;
@@ -20,7 +24,8 @@ typedef struct cpu_state {
     kernel_bounds bounds;  /* codes owned; NULL until a search needs them */
     uint16_t *block_codes; /* owned; of the last edge asked for */
     int32_t block_edge_vox;
-    cpu_cubic cubic[2]; /* of cardinal splines, of B-splines */
+    cpu_cubic cubic[2];              /* of cardinal splines, of B-splines */
+    cpu_layout layouts[CPU_LAYOUTS]; /* the coefficients of B-splines, in copies that suit alignment */
 } cpu_state;
 
 static void fixed_rows(const cpu_job *job, int32_t y0, int32_t y1, uint64_t *samples)
@@ -230,6 +235,26 @@ static reference_status need_cubic(cpu_state *s, kernel_frame *f, reference_stat
     return status;
 }
 
+/* Puts a copy of the coefficients in the place of them. Where there is no memory for one, they are read as they are. */
+static void align(cpu_state *s, const device_march *m, const cpu_kernels *k, kernel_frame *f, reference_stats *stats)
+{
+    const device_alignment *a = &m->alignment;
+    const kernel_layout layout = k->quads && !a->sorted ? KERNEL_QUADS : KERNEL_WIDE;
+    const int32_t first = a->sorted ? a->fast_axis : 0;
+    stats->copies = 1;
+    if (a->sorted && a->copies == 1)
+        return;
+    const cpu_layout *copy = cpu_layout_of(s->layouts, &s->cubic[true].volume, layout, first, s->threads, stats);
+    if (!copy)
+        return;
+    if (a->sorted)
+        cpu_layout_turn_axes(f, first);
+    f->volume.layout = layout;
+    f->volume.voxels = copy->first;
+    memcpy(f->volume.stride, copy->stride, sizeof copy->stride);
+    stats->copies = a->sorted ? 3 : 1;
+}
+
 static const cpu_kernels *kernels_of(const cpu_state *s, const device_march *m)
 {
     const bool is_double = m->numbers == REFERENCE_DOUBLE;
@@ -239,6 +264,13 @@ static const cpu_kernels *kernels_of(const cpu_state *s, const device_march *m)
     if (m->numbers == REFERENCE_FLOAT && m->frame.filter == KERNEL_LINEAR && cells_suit(&s->volume))
         return cpu_kernels_best(s->simd);
     return is_double ? &cpu_kernels_double : &cpu_kernels_float;
+}
+
+/* Rows of a band: as many as share what is in a cache, but no fewer bands than keep all threads at work. */
+static int32_t aligned_band(const cpu_state *s, int32_t rows)
+{
+    const int32_t share = rows / (4 * s->threads) / BAND * BAND;
+    return share < BAND ? BAND : share > ALIGNED_BAND ? ALIGNED_BAND : share;
 }
 
 static reference_status cpu_march(void *state, const device_march *m, double *rgba, reference_stats *stats,
@@ -257,8 +289,14 @@ static reference_status cpu_march(void *state, const device_march *m, double *rg
         status = need_cubic(s, &f, stats, error);
     if (status != REFERENCE_OK)
         return status;
-    cpu_job job = {
-        .work = march_rows, .input = &f, .output = rgba, .march_rows = k->march[m->mode], .rows = f.camera.height_px};
+    if (m->alignment.wanted)
+        align(s, m, k, &f, stats);
+    cpu_job job = {.work = march_rows,
+                   .input = &f,
+                   .output = rgba,
+                   .march_rows = k->march[m->mode],
+                   .rows = f.order.rows,
+                   .band = m->alignment.wanted ? aligned_band(s, f.order.rows) : BAND};
     stats->draw_ms = run(s, &job);
     stats->samples = job.samples;
     return REFERENCE_OK;
@@ -272,6 +310,8 @@ static void cpu_close(void *state)
     free(s->block_codes);
     for (int i = 0; i < 2; i++)
         cpu_cubic_free(&s->cubic[i]);
+    for (int i = 0; i < CPU_LAYOUTS; i++)
+        cpu_layout_free(&s->layouts[i]);
     free(s);
 }
 

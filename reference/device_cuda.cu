@@ -11,65 +11,9 @@
 #include "device.h"
 #include "kernel_fixed.h"
 #include "march_cuda.h"
+#include "state_cuda.h"
 
 enum { BLOCK_W = 16, BLOCK_H = 8 };
-
-typedef struct cuda_state {
-    reference_volume volume; /* voxels in the host's memory */
-    void *linear;            /* the voxels, as they are; NULL until a frame needs them */
-    void *cells;             /* the same packed (lanes_cuda.h) */
-    cudaArray_t array;       /* the same for the texture unit */
-    cudaTextureObject_t texture;
-    bounds_code code;
-    bool has_code;
-    kernel_bounds bounds;  /* codes on the card; NULL until a search needs them */
-    uint16_t *block_codes; /* on the card; of the last edge asked for */
-    int32_t block_edge_vox;
-    cubic_cuda cubic[2]; /* of cardinal splines, of B-splines */
-    cudaEvent_t begin, end;
-} cuda_state;
-
-/* Memory of one frame, freed together. */
-enum { PIECES = 8 };
-typedef struct frame_memory {
-    void *piece[PIECES];
-    int count;
-} frame_memory;
-
-static const size_t voxel_bytes[] = {1, 2, 4};
-
-static size_t volume_bytes(const reference_volume *v)
-{
-    return (size_t)v->dims_vox[0] * (size_t)v->dims_vox[1] * (size_t)v->dims_vox[2] * voxel_bytes[v->type];
-}
-
-/* Whether a call went well; the sentence says which did not. */
-static reference_status check(cudaError_t code, const char *what, vodr_error *error)
-{
-    if (code == cudaSuccess)
-        return REFERENCE_OK;
-    reference_status status = code == cudaErrorMemoryAllocation ? REFERENCE_NO_MEMORY : REFERENCE_NO_DEVICE;
-    return reference_fail(error, status, "CUDA: %s: %s", what, cudaGetErrorString(code));
-}
-
-/* Leaves the function that it stands in when a call fails. */
-#define TRY(call)                                                                                                      \
-    do {                                                                                                               \
-        reference_status try_status = check(call, #call, error);                                                       \
-        if (try_status != REFERENCE_OK)                                                                                \
-            return try_status;                                                                                         \
-    } while (0)
-
-/* Refuses what the card has no room for, before anything is allocated. */
-static reference_status check_room(size_t bytes, const char *what, vodr_error *error)
-{
-    size_t room, all;
-    TRY(cudaMemGetInfo(&room, &all));
-    if (bytes <= room)
-        return REFERENCE_OK;
-    return reference_fail(error, REFERENCE_NO_MEMORY, "%s needs %zu MiB on the card, which has %zu of its %zu MiB free",
-                          what, (bytes >> 20) + 1, room >> 20, all >> 20);
-}
 
 static void cuda_close(void *state)
 {
@@ -84,6 +28,8 @@ static void cuda_close(void *state)
     for (int i = 0; i < 2; i++) {
         cudaFree(s->cubic[i].coefficients);
         cudaFree(s->cubic[i].codes);
+        for (int a = 0; a < 3; a++)
+            cudaFree(s->cubic[i].copy[a]);
     }
     if (s->begin)
         cudaEventDestroy(s->begin);
@@ -167,29 +113,6 @@ static reference_status need_texture(cuda_state *s, vodr_error *error)
     TRY(cudaCreateTextureObject(&s->texture, &resource, &texture, NULL));
     return REFERENCE_OK;
 }
-
-/* A piece of device memory for the frame, filled from `data` where that is not NULL. */
-static reference_status take(frame_memory *m, size_t bytes, const void *data, void **piece, vodr_error *error)
-{
-    TRY(cudaMalloc(piece, bytes ? bytes : 1));
-    m->piece[m->count++] = *piece;
-    if (data)
-        TRY(cudaMemcpy(*piece, data, bytes, cudaMemcpyHostToDevice));
-    return REFERENCE_OK;
-}
-
-static void release(frame_memory *m)
-{
-    while (m->count > 0)
-        cudaFree(m->piece[--m->count]);
-}
-
-#define TRY_STATUS(call)                                                                                               \
-    do {                                                                                                               \
-        reference_status try_status = call;                                                                            \
-        if (try_status != REFERENCE_OK)                                                                                \
-            return try_status;                                                                                         \
-    } while (0)
 
 static dim3 grid_of(int32_t width_px, int32_t height_px)
 {
@@ -428,6 +351,53 @@ static reference_status need_cubic(cuda_state *s, frame_memory *m, bool spline, 
     return REFERENCE_OK;
 }
 
+/* Whether there is room for three copies; asked once, before the first. */
+static reference_status decide_copies(cuda_state *s, vodr_error *error)
+{
+    cubic_cuda *c = &s->cubic[true];
+    const size_t count = bounds_box_count(cubic_wide(s->volume.dims_vox, 0));
+    size_t room, all;
+    if (c->copies > 0)
+        return REFERENCE_OK;
+    TRY(cudaMemGetInfo(&room, &all));
+    c->copies = count <= INT32_MAX && 3 * count * sizeof(float) <= room / 10 * 9 ? 3 : 1;
+    return REFERENCE_OK;
+}
+
+/* The copy whose fastest axis is `first`, in place of the coefficients; once there, its sums are of the same numbers in
+ * the same order. */
+static reference_status take_copy(cuda_state *s, const device_alignment *a, kernel_volume *v, reference_stats *stats,
+                                  vodr_error *error)
+{
+    cubic_cuda *c = &s->cubic[true];
+    const int first = a->fast_axis;
+    const bounds_box wide = cubic_wide(s->volume.dims_vox, first);
+    stats->copies = 1;
+    TRY_STATUS(decide_copies(s, error));
+    if (a->copies == 1 || c->copies == 1)
+        return REFERENCE_OK;
+    if (!c->copy[first]) {
+        if (cudaMalloc(&c->copy[first], bounds_box_count(wide) * sizeof(float)) != cudaSuccess) {
+            cudaGetLastError(); /* it has been seen to */
+            c->copies = 1;
+            return REFERENCE_OK;
+        }
+        TRY(cudaEventRecord(s->begin));
+        cubic_start_sort(c->coefficients, s->volume.dims_vox, first, c->copy[first]);
+        TRY_STATUS(add_time(s, stats, error));
+    }
+    const int32_t stride[3] = {1, wide.size[0], wide.size[0] * wide.size[1]};
+    int64_t begin = 0;
+    for (int n = 0; n < 3; n++) {
+        v->stride[(first + n) % 3] = stride[n];
+        begin += (int64_t)LAYOUT_MARGIN_VOX * stride[n];
+    }
+    v->layout = KERNEL_WIDE;
+    v->voxels = c->copy[first] + begin;
+    stats->copies = 3;
+    return REFERENCE_OK;
+}
+
 /* The scale of a filter's bounds, once; ends[] has room for two numbers on the card. */
 static reference_status need_scale(cuda_state *s, const reference_volume *v, bool spline, int32_t *ends,
                                    vodr_error *error)
@@ -513,8 +483,8 @@ static reference_status take_tables(frame_memory *m, kernel_frame *f, vodr_error
     return REFERENCE_OK;
 }
 
-static reference_status take_volume(cuda_state *s, frame_memory *m, kernel_mode mode, kernel_frame *f,
-                                    reference_stats *stats, vodr_error *error)
+static reference_status take_volume(cuda_state *s, frame_memory *m, kernel_mode mode, const device_alignment *a,
+                                    kernel_frame *f, reference_stats *stats, vodr_error *error)
 {
     if (f->filter == KERNEL_CUBIC) {
         reference_volume v;
@@ -522,7 +492,7 @@ static reference_status take_volume(cuda_state *s, frame_memory *m, kernel_mode 
         f->volume.type = v.type;
         f->volume.voxels = v.voxels;
         f->cells.codes = s->cubic[f->volume.spline].codes;
-        return REFERENCE_OK;
+        return a->wanted ? take_copy(s, a, &f->volume, stats, error) : REFERENCE_OK;
     }
     TRY_STATUS(f->filter == KERNEL_TEXTURE ? need_texture(s, error) : need_linear(s, error));
     if (f->filter == KERNEL_LINEAR && mode != KERNEL_SEARCH) { /* which reads too little for cells to be packed */
@@ -541,17 +511,17 @@ static reference_status draw_march(cuda_state *s, frame_memory *m, const device_
     kernel_frame f = job->frame;
     void *out, *counts;
     size_t pixels = (size_t)f.camera.width_px * (size_t)f.camera.height_px;
-    TRY_STATUS(take_volume(s, m, job->mode, &f, stats, error));
+    TRY_STATUS(take_volume(s, m, job->mode, &job->alignment, &f, stats, error));
     TRY_STATUS(take_bounds(s, job->mode, &f, stats, error));
     TRY_STATUS(check_room(pixels * (sizeof *host + sizeof(uint32_t)), "the frame", error));
     TRY_STATUS(take_tables(m, &f, error));
     TRY_STATUS(take(m, pixels * sizeof *host, NULL, &out, error));
     TRY_STATUS(take(m, pixels * sizeof(uint32_t), NULL, &counts, error));
     march_function *variant = march_variant(job->mode, &f);
-    const march_launch launch = launch_of(job->mode, &f);
+    const march_launch launch = launch_of(job->mode, &f, f.volume.layout == KERNEL_WIDE ? job->alignment.fast_axis : 0);
     const int threads = threads_of(job->mode), width = 2 << launch.warp_log2;
     const int height = threads / 64 * (32 >> launch.warp_log2);
-    const dim3 grid((f.camera.width_px + width - 1) / width, (f.camera.height_px + height - 1) / height);
+    const dim3 grid((f.order.columns + width - 1) / width, (f.order.rows + height - 1) / height);
     const size_t shared_bytes =
         job->mode == KERNEL_OVER || job->mode == KERNEL_LIT ? table_bytes(&f, launch.copies_log2) : 0;
     TRY(cudaFuncSetAttribute(variant, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared_bytes));

@@ -81,14 +81,16 @@ KERNEL real cubic_sum(const kernel_volume *v, reference_voxel type, const whole 
 /* The values at places. */
 APART void cubic_values(const kernel_volume *v, reference_voxel type, const real place[3], real *value)
 {
-    const int32_t stride[3] = {1, v->dims_vox[0], v->dims_vox[0] * v->dims_vox[1]};
     whole offset[3][4];
     real weight[3][4];
     for (int a = 0; a < 3; a++) {
         const whole cell = truncate(place[a]);
         cubic_weights(v->spline, place[a] - to_real(cell), weight[a]);
-        for (int n = 0; n < 4; n++)
-            offset[a][n] = clamp_whole(cell + (n - 2), 0, v->dims_vox[a] - 1) * stride[a];
+        for (int n = 0; n < 4; n++) {
+            const whole voxel = cell + (n - 2);
+            offset[a][n] =
+                (v->layout == KERNEL_PLAIN ? clamp_whole(voxel, 0, v->dims_vox[a] - 1) : voxel) * v->stride[a];
+        }
     }
     switch (type) {
     case REFERENCE_UINT8: *value = cubic_sum(v, REFERENCE_UINT8, offset, weight); break;

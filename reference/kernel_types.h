@@ -43,12 +43,25 @@ typedef struct kernel_part {
     bool boxed; /* lo and hi are not the whole volume's */
 } kernel_part;
 
+/* How the voxels of KERNEL_CUBIC lie in memory. */
+typedef enum kernel_layout {
+    KERNEL_PLAIN, /* x fastest, then y, then z; beyond the border there is nothing */
+    KERNEL_WIDE,  /* in steps of `stride`; LAYOUT_MARGIN_VOX beyond each border are there, and `voxels` is the first
+                     within it */
+    KERNEL_QUADS, /* likewise, four rows as one: LAYOUT_QUAD voxels along y for each x; `stride` of y is of four rows */
+} kernel_layout;
+
+/* The filter reads so many voxels beyond the border: a sample may lie half a voxel beyond the centre of the last. */
+enum { LAYOUT_MARGIN_VOX = 2, LAYOUT_QUAD = 4 };
+
 /* Cell i of an axis lies between the centres of voxels i-1 and i, clamped to the volume, so that an axis has one more
  * than voxels. A position p voxels from the volume's corner lies in cell floor(p + 0.5). */
 typedef struct kernel_volume {
     int32_t dims_vox[3];
     reference_voxel type;
     const void *voxels;
+    kernel_layout layout;       /* KERNEL_CUBIC: how voxels lie in memory */
+    int32_t stride[3];          /* KERNEL_CUBIC: voxels from one to the next along each axis */
     const void *cells;          /* the voxels around each cell, together: as lanes_*.h of the device reads them */
     unsigned long long texture; /* CUDA: the same voxels as a texture object; normalised where they are integers */
     bool spline;                /* KERNEL_CUBIC: voxels are coefficients of B-splines, not values of cardinal ones */
@@ -97,8 +110,20 @@ typedef struct kernel_table {
     double gradient_scale; /* row = gradient magnitude, of stored values a finest voxel, times this * (rows - 1) */
 } kernel_table;
 
+/* Which pixel a lane takes: column i and row j of the order are a pixel of the frame, each pixel of just one of them.
+ * Runs along a row of the order are runs of pixels along a line of the picture: (i, j + first + shift) where shift is
+ * the whole number nearest i*slope/2^16, with `steep` x and y exchanged. All zeros but columns and rows: the frame's
+ * own rows. kernel_order.h. */
+typedef struct kernel_order {
+    bool steep;
+    int32_t slope; /* -2^16 to 2^16 */
+    int32_t first, columns, rows;
+    int32_t tile_log2; /* the CPU: of pixels that a tile is wide, 2 or more */
+} kernel_order;
+
 typedef struct kernel_frame {
     reference_camera camera;
+    kernel_order order;
     kernel_volume volume;
     kernel_part part;
     kernel_blocks blocks;

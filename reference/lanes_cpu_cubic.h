@@ -46,12 +46,12 @@ KERNEL whole cubic_widen(layer_shorts line)
 }
 
 /* The layer of four rows of four voxels from number `first` on, `row` apart. */
-KERNEL real cubic_layer(const void *voxels, reference_voxel type, size_t first, size_t row)
+KERNEL real cubic_layer(const void *voxels, reference_voxel type, ptrdiff_t first, ptrdiff_t row)
 {
     if (type == REFERENCE_UINT8) {
         uint32_t line[4];
         layer_bytes layer;
-        for (size_t y = 0; y < 4; y++)
+        for (ptrdiff_t y = 0; y < 4; y++)
             memcpy(&line[y], (const uint8_t *)voxels + first + y * row, sizeof line[y]);
         const four all = {(int32_t)line[0], (int32_t)line[1], (int32_t)line[2], (int32_t)line[3]};
         memcpy(&layer, &all, sizeof layer);
@@ -59,14 +59,41 @@ KERNEL real cubic_layer(const void *voxels, reference_voxel type, size_t first, 
     }
     if (type == REFERENCE_UINT16) {
         uint64_t line[4];
-        for (size_t y = 0; y < 4; y++)
+        for (ptrdiff_t y = 0; y < 4; y++)
             memcpy(&line[y], (const uint16_t *)voxels + first + y * row, sizeof line[y]);
         return to_real(cubic_widen((layer_shorts){line[0], line[1], line[2], line[3]}));
     }
     four line[4];
-    for (size_t y = 0; y < 4; y++)
+    for (ptrdiff_t y = 0; y < 4; y++)
         memcpy(&line[y], (const float *)voxels + first + y * row, sizeof line[y]);
     return (real)join(line[0], line[1], line[2], line[3]);
+}
+
+/* Of KERNEL_QUADS: what a layer takes of the 32 voxels of two quads, x slowest in each, where its rows begin with row
+ * y of the first. */
+#define CUBIC_ROW(y)                                                                                                   \
+    (y) / 4 * 16 + (y) % 4, (y) / 4 * 16 + (y) % 4 + 4, (y) / 4 * 16 + (y) % 4 + 8, (y) / 4 * 16 + (y) % 4 + 12
+#define CUBIC_ROWS(y)                                                                                                  \
+    {                                                                                                                  \
+        CUBIC_ROW(y), CUBIC_ROW(y + 1), CUBIC_ROW(y + 2), CUBIC_ROW(y + 3)                                             \
+    }
+static const whole cubic_turned[LAYOUT_QUAD] = {CUBIC_ROWS(0), CUBIC_ROWS(1), CUBIC_ROWS(2), CUBIC_ROWS(3)};
+
+/* The four layers of a cell, of voxels in quads. */
+KERNEL void cubic_quads(const kernel_volume *v, const int32_t cell[3], real layer[4])
+{
+    const ptrdiff_t quad = v->stride[1], next = v->stride[2];
+    const int32_t y = cell[1] - 2;
+    const float *at = (const float *)v->voxels + (cell[2] - 2) * next + (y >> 2) * quad + (cell[0] - 2) * LAYOUT_QUAD;
+    const whole turned = cubic_turned[y & 3];
+    for (int z = 0; z < 4; z++, at += next) {
+#if defined(__AVX512F__)
+        layer[z] = (real)_mm512_permutex2var_ps(_mm512_loadu_ps(at), (__m512i)turned, _mm512_loadu_ps(at + quad));
+#else
+        for (int n = 0; n < LANES; n++)
+            layer[z][n] = turned[n] < LANES ? at[turned[n]] : at[quad + turned[n] - LANES];
+#endif
+    }
 }
 
 /* The four layers of a cell at the volume's border. */
@@ -134,18 +161,20 @@ typedef struct cubic_places {
 } cubic_places;
 
 /* The values of the lanes that are bits of `on`; type and spline are constants. */
-KERNEL void cubic_lanes(const kernel_volume *v, reference_voxel type, bool spline, const cubic_places *p, uint32_t on,
-                        float value[LANES])
+KERNEL void cubic_lanes(const kernel_volume *v, reference_voxel type, bool spline, bool quads, const cubic_places *p,
+                        uint32_t on, float value[LANES])
 {
-    const size_t row = (size_t)v->dims_vox[0], next = row * (size_t)v->dims_vox[1];
+    const ptrdiff_t row = v->stride[1], next = v->stride[2];
     for (; on != 0; on &= on - 1) {
         const int l = __builtin_ctz(on);
         const int32_t at[3] = {p->cell[0][l], p->cell[1][l], p->cell[2][l]};
         const float t[3] = {p->share[0][l], p->share[1][l], p->share[2][l]};
         real layer[4];
-        if (p->inside >> l & 1) {
-            const size_t first = (size_t)(at[2] - 2) * next + (size_t)(at[1] - 2) * row + (size_t)(at[0] - 2);
-            for (size_t z = 0; z < 4; z++)
+        if (quads) {
+            cubic_quads(v, at, layer);
+        } else if (p->inside >> l & 1) {
+            const ptrdiff_t first = (at[2] - 2) * next + (at[1] - 2) * row + (at[0] - 2);
+            for (ptrdiff_t z = 0; z < 4; z++)
                 layer[z] = cubic_layer(v->voxels, type, first + z * next, row);
         } else {
             cubic_border(v, at, layer);
@@ -158,14 +187,16 @@ KERNEL void cubic_lanes(const kernel_volume *v, reference_voxel type, bool splin
 APART void cubic_values(const kernel_volume *v, reference_voxel type, const cubic_places *p, uint32_t on,
                         float value[LANES])
 {
-    if (v->spline)
-        cubic_lanes(v, REFERENCE_FLOAT32, true, p, on, value);
+    if (v->layout == KERNEL_QUADS)
+        cubic_lanes(v, REFERENCE_FLOAT32, true, true, p, on, value);
+    else if (v->spline)
+        cubic_lanes(v, REFERENCE_FLOAT32, true, false, p, on, value);
     else if (type == REFERENCE_UINT8)
-        cubic_lanes(v, REFERENCE_UINT8, false, p, on, value);
+        cubic_lanes(v, REFERENCE_UINT8, false, false, p, on, value);
     else if (type == REFERENCE_UINT16)
-        cubic_lanes(v, REFERENCE_UINT16, false, p, on, value);
+        cubic_lanes(v, REFERENCE_UINT16, false, false, p, on, value);
     else
-        cubic_lanes(v, REFERENCE_FLOAT32, false, p, on, value);
+        cubic_lanes(v, REFERENCE_FLOAT32, false, false, p, on, value);
 }
 
 KERNEL real sample_cubic(const kernel_volume *v, reference_voxel type, const real place[3], mask on)
@@ -181,7 +212,8 @@ KERNEL real sample_cubic(const kernel_volume *v, reference_voxel type, const rea
         const real t = place[a] - to_real(i);
         memcpy(p.cell[a], &i, sizeof p.cell[a]);
         memcpy(p.share[a], &t, sizeof p.share[a]);
-        inside = inside & (i >= 2) & (i <= v->dims_vox[a] - 2);
+        if (v->layout == KERNEL_PLAIN)
+            inside = inside & (i >= 2) & (i <= v->dims_vox[a] - 2);
     }
     p.inside = lane_bits(inside);
     float lane[LANES] = {0};

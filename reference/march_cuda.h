@@ -42,15 +42,16 @@ static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH
     if (mode == KERNEL_OVER || (mode == KERNEL_LIT && f.table.rows == 1))
         table = share_table(f.table, launch.copies_log2, shared);
     const int lane = thread & 31, warp = thread >> 5, width = 1 << launch.warp_log2, height = 32 >> launch.warp_log2;
-    int x = (blockIdx.x * 2 + (warp & 1)) * width, y = (blockIdx.y * (threads_of(mode) / 64) + (warp >> 1)) * height;
+    int i = (blockIdx.x * 2 + (warp & 1)) * width, j = (blockIdx.y * (threads_of(mode) / 64) + (warp >> 1)) * height;
     if (mode == KERNEL_SEARCH) { /* lanes that go together are a tile TILE_PX wide */
-        x += lane / TOGETHER * TILE_PX + lane % TILE_PX;
-        y += lane % TOGETHER / TILE_PX;
+        i += lane / TOGETHER * TILE_PX + lane % TILE_PX;
+        j += lane % TOGETHER / TILE_PX;
     } else {
-        x += lane & (width - 1);
-        y += lane >> launch.warp_log2;
+        i += lane & (width - 1);
+        j += lane >> launch.warp_log2;
     }
-    const bool inside = x < f.camera.width_px && y < f.camera.height_px;
+    int32_t x, y;
+    const bool inside = order_has(&f, i, j, &x, &y);
     kernel_ray ray = ray_none(&f.part);
     if (inside)
         ray = ray_make(&f, x, y);
@@ -66,9 +67,9 @@ static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH
     packet_result result = cast(&f, &table, &rays, mode, filter, skip, type);
     if (!inside)
         return;
-    size_t i = (size_t)y * f.camera.width_px + x;
-    rgba[i] = make_float4(result.rgba[0], result.rgba[1], result.rgba[2], result.rgba[3]);
-    counts[i] = (uint32_t)result.samples;
+    size_t pixel = (size_t)y * f.camera.width_px + x;
+    rgba[pixel] = make_float4(result.rgba[0], result.rgba[1], result.rgba[2], result.rgba[3]);
+    counts[pixel] = (uint32_t)result.samples;
 }
 
 typedef void march_function(const kernel_frame f, const march_launch launch, float4 *rgba, uint32_t *counts);

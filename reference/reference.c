@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "aligned.h"
 #include "blocks.h"
 #include "bounds.h"
 #include "device.h"
@@ -251,7 +252,10 @@ static reference_status check_march(const reference *r, const reference_march_jo
         return reference_fail(
             error, REFERENCE_INVALID,
             "bisection and seeds are of the maximum of nearest and linear samples, hulls and rivals of "
-            "cubic ones");
+            "cubic ones, alignment of B-splines");
+    if (job->copies != 0 && job->copies != 1 && job->copies != 3)
+        return reference_fail(error, REFERENCE_INVALID,
+                              "copies are %d, must be 1, 3 or, of the two what there is room for, 0", job->copies);
     if (reference_is_cubic(job->filter) && job->numbers == REFERENCE_TEXTURE)
         return reference_fail(error, REFERENCE_INVALID,
                               "a texture unit's weights are of nearest and linear, not of cubics");
@@ -450,24 +454,6 @@ static kernel_table table_of(const reference_march_job *job, const void *rgba)
     return k;
 }
 
-bool reference_is_cubic(reference_filter filter)
-{
-    return filter == REFERENCE_CARDINAL || filter == REFERENCE_BSPLINE;
-}
-
-bool reference_accel_suits(reference_accel accel, reference_blend blend, reference_filter filter)
-{
-    switch (accel) {
-    case REFERENCE_ACCEL_BLOCK: return !reference_is_cubic(filter);
-    case REFERENCE_ACCEL_BISECT:
-    case REFERENCE_ACCEL_SEED: return !reference_is_cubic(filter) && blend == REFERENCE_MIP;
-    case REFERENCE_ACCEL_RIVAL:
-    case REFERENCE_ACCEL_HULL: return reference_is_cubic(filter);
-    case REFERENCE_ACCEL_UNSAFE: return filter == REFERENCE_CARDINAL;
-    default: return true;
-    }
-}
-
 static kernel_mode mode_of(const reference *r, const reference_march_job *job, const kernel_part *part)
 {
     kernel_bounds bounds;
@@ -501,14 +487,12 @@ static kernel_blocks blocks_of(const reference *r, const reference_march_job *jo
     return b;
 }
 
-reference_status reference_march(reference *r, const reference_march_job *job, double *rgba, reference_stats *stats,
-                                 vodr_error *error)
+/* A frame of a job whose accel says nothing of alignment. */
+static reference_status march(reference *r, const reference_march_job *job, const device_alignment *alignment,
+                              const kernel_order *order, double *rgba, reference_stats *stats, vodr_error *error)
 {
-    *stats = (reference_stats){0};
     kernel_part part;
-    reference_status status = check_march(r, job, error);
-    if (status == REFERENCE_OK)
-        status = check_part(r, job, &part, error);
+    reference_status status = check_part(r, job, &part, error);
     if (status == REFERENCE_OK && reference_is_cubic(job->filter))
         status = check_cubic(r, error);
     if (status == REFERENCE_OK && has_blocks(job))
@@ -519,9 +503,13 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
     void *table = convert_table(job);
     if (!table)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
+    const int32_t *dims = r->volume.dims_vox;
     device_march m = {.frame = {.camera = job->camera,
-                                .volume = {.type = r->volume.type,
+                                .order = *order,
+                                .volume = {.dims_vox = {dims[0], dims[1], dims[2]},
+                                           .type = r->volume.type,
                                            .voxels = r->volume.voxels,
+                                           .stride = {1, dims[0], dims[0] * dims[1]},
                                            .spline = job->filter == REFERENCE_BSPLINE},
                                 .part = part,
                                 .table = table_of(job, table),
@@ -530,9 +518,9 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
                                 .phong = job->shading == REFERENCE_PHONG,
                                 .stored = job->stored,
                                 .surface_scale = fabs(job->window_scale) * surface_vox},
+                      .alignment = *alignment,
                       .numbers = job->numbers,
                       .mode = mode_of(r, job, &part)};
-    memcpy(m.frame.volume.dims_vox, r->volume.dims_vox, sizeof r->volume.dims_vox);
     m.frame.blocks = blocks_of(r, job);
     if (has_blocks(job))
         status = classify_blocks(r, job, &m.frame, error);
@@ -541,6 +529,52 @@ reference_status reference_march(reference *r, const reference_march_job *job, d
         status = r->ops->march(r->state, &m, rgba, stats, error);
     free(table);
     return status;
+}
+
+/* Draws the job's picture turned, and turns it back. */
+static reference_status march_turned(reference *r, const reference_march_job *job, const device_alignment *alignment,
+                                     double theta, double *rgba, reference_stats *stats, vodr_error *error)
+{
+    reference_march_job turned = *job;
+    turned.camera = aligned_turn(&job->camera, theta);
+    const size_t pixels = (size_t)turned.camera.width_px * (size_t)turned.camera.height_px;
+    double *picture = malloc(4 * pixels * sizeof *picture);
+    if (!picture)
+        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu pixels", pixels);
+    const kernel_order order = aligned_order_usual(&turned.camera);
+    reference_status status = march(r, &turned, alignment, &order, picture, stats, error);
+    const double begin_ms = now_ms();
+    if (status == REFERENCE_OK)
+        aligned_turn_back(&job->camera, &turned.camera, theta, picture, rgba);
+    stats->turn_ms = now_ms() - begin_ms;
+    stats->theta_deg = theta * 180 / acos(-1);
+    free(picture);
+    return status;
+}
+
+reference_status reference_march(reference *r, const reference_march_job *job, double *rgba, reference_stats *stats,
+                                 vodr_error *error)
+{
+    *stats = (reference_stats){0};
+    reference_status status = check_march(r, job, error);
+    if (status != REFERENCE_OK)
+        return status;
+    const bool paper = job->accel == REFERENCE_ACCEL_ALIGNED_PAPER;
+    reference_march_job plain = *job;
+    kernel_order order = aligned_order_usual(&job->camera);
+    device_alignment alignment = {.copies = job->copies};
+    if (reference_accel_is_aligned(job->accel)) {
+        const reference_theta kind = paper ? job->theta : REFERENCE_THETA_BOX;
+        const aligned_view view = aligned_view_of(&job->camera, r->volume.dims_vox, kind);
+        plain.accel = job->accel == REFERENCE_ACCEL_ALIGNED_BEST ? REFERENCE_ACCEL_BEST : REFERENCE_ACCEL_NONE;
+        alignment.wanted = true;
+        alignment.sorted = paper;
+        alignment.fast_axis = view.fast_axis;
+        if (paper)
+            return march_turned(r, &plain, &alignment, view.theta, rgba, stats, error);
+        order = aligned_order_of(&job->camera, view.theta);
+    }
+    return march(r, &plain, &alignment, &order, rgba, stats, error);
 }
 
 reference_status reference_show_stored(const reference_march_job *job, double *rgba, size_t count, vodr_error *error)

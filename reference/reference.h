@@ -63,6 +63,9 @@ typedef struct reference_stats {
     double draw_ms;       /* the kernel alone: on the card between two events, on the CPU by the clock */
     double prepare_ms;    /* tables of the transfer function, and what is derived of the blocks under it */
     double preprocess_ms; /* what is derived of the volume alone, where this call was the first to need it */
+    int32_t copies;       /* aligned: of the coefficients that there are for views of all sides: 3, or 1; else 0 */
+    double theta_deg;     /* aligned-paper: by how much the picture was turned */
+    double turn_ms;       /* aligned-paper: what turning it back took, on the CPU */
 } reference_stats;
 
 /* ---- the machine's arithmetic ---- */
@@ -94,22 +97,33 @@ typedef enum reference_filter {
 } reference_filter;
 typedef enum reference_shading { REFERENCE_UNLIT, REFERENCE_PHONG } reference_shading;
 
-/* How what does not show is passed over; none changes a byte, but the last. */
+/* How what does not show is passed over, and how what is sampled is read; none changes a byte, but the last two. */
 typedef enum reference_accel {
     REFERENCE_ACCEL_NONE,
-    REFERENCE_ACCEL_BLOCK,  /* a block that is transparent, or cannot raise the maximum, is left at its far side */
-    REFERENCE_ACCEL_BISECT, /* mip: the same, its far side found by bisection */
-    REFERENCE_ACCEL_SEED,   /* mip: the same, and the middle sample of the ray comes first */
-    REFERENCE_ACCEL_BEST,   /* the fastest there is; over: blocks know how far the nearest visible one is; mip: the
-                               samples of the greatest bounds first; cubics: cells are passed over too */
-    REFERENCE_ACCEL_RIVAL,  /* cubics: blocks bounded by what the worst voxels between their extremes could give */
-    REFERENCE_ACCEL_HULL,   /* cubics: blocks bounded by their cells' Bezier points */
+    REFERENCE_ACCEL_BLOCK,   /* a block that is transparent, or cannot raise the maximum, is left at its far side */
+    REFERENCE_ACCEL_BISECT,  /* mip: the same, its far side found by bisection */
+    REFERENCE_ACCEL_SEED,    /* mip: the same, and the middle sample of the ray comes first */
+    REFERENCE_ACCEL_BEST,    /* the fastest there is; over: blocks know how far the nearest visible one is; mip: the
+                                samples of the greatest bounds first; cubics: cells are passed over too */
+    REFERENCE_ACCEL_RIVAL,   /* cubics: blocks bounded by what the worst voxels between their extremes could give */
+    REFERENCE_ACCEL_HULL,    /* cubics: blocks bounded by their cells' Bezier points */
+    REFERENCE_ACCEL_ALIGNED, /* B-splines: none's samples; pixels that go together, and copies of the coefficients, are
+                                such that neighbours read memory side by side */
+    REFERENCE_ACCEL_ALIGNED_BEST,  /* B-splines: best's samples, read likewise */
+    REFERENCE_ACCEL_ALIGNED_PAPER, /* B-splines: none's picture, turned until its rows run along an axis of the volume,
+                                      and turned back, which rounds it */
     REFERENCE_ACCEL_UNSAFE, /* cubics: the rival's bound with a margin of one axis alone, M + (M - m)/8, which loses
                                what three axes overshoot: to be seen in tests and measurements */
     REFERENCE_ACCELS,
 } reference_accel;
 
+/* What a picture of REFERENCE_ACCEL_ALIGNED_PAPER is turned for: that pixels side by side are where neighbouring voxels
+ * are, on the volume's face that is looked at, or as projected to the image. */
+typedef enum reference_theta { REFERENCE_THETA_BOX, REFERENCE_THETA_PLANE } reference_theta;
+
 bool reference_is_cubic(reference_filter filter);
+
+bool reference_accel_is_aligned(reference_accel accel);
 
 /* Whether a blend of a filter's samples has an accel. */
 bool reference_accel_suits(reference_accel accel, reference_blend blend, reference_filter filter);
@@ -149,7 +163,10 @@ typedef struct reference_march_job {
     reference_filter filter;
     reference_shading shading;
     reference_accel accel;
-    int32_t block_vox;  /* edge of a block, 2 to VODR_MAX_DIM_VOX; mip's best has blocks of its own */
+    reference_theta theta;
+    int32_t copies;    /* aligned: 3, of the coefficients, one for each axis that is looked along most, or 1; 0: 3 where
+                          the    device has room */
+    int32_t block_vox; /* edge of a block, 2 to VODR_MAX_DIM_VOX; mip's best has blocks of its own */
     double termination; /* a ray ends at this opacity; above 1: never */
     reference_table table;
     double window_scale, window_offset; /* place in the window, 0 to 1 = stored*scale + offset */

@@ -71,7 +71,7 @@ _vodr_value() {
         _vodr_words "$1" "$2" --tf
         compgen -f -- "$4"
         ;;
-    --type | --endian | --plot-type | --device | --method | --numbers | --accel | --shading | --balance | --weight | --composite | --channel) _vodr_words "$1" "$2" "$3" ;;
+    --type | --endian | --plot-type | --device | --method | --numbers | --accel | --theta | --shading | --balance | --weight | --composite | --channel) _vodr_words "$1" "$2" "$3" ;;
     --projection) printf '%s\n' parallel perspective perspective: ;;
     *) if _vodr_options "$1" "$2" | grep -q -e "^$3 .*\(\.[a-z]\|FILE\)"; then compgen -f -- "$4"; fi ;;
     esac

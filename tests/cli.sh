@@ -178,7 +178,7 @@ expect "machine list has paper-32" '^paper-32 ' ../out
     bad 2 "--device 'gpu': must be cpu or cuda" "$vodr" reference $raw -o no.png --device gpu
     bad 2 "--method 'rays': must be slices or raycast" "$vodr" reference $raw -o no.png --method rays
     bad 2 "--numbers 'half': must be fixed, float, double or texture" "$vodr" reference $raw -o no.png --numbers half
-    bad 2 "--accel 'bezier': must be none, block, bisect, seed, best, rival or hull" "$vodr" reference $raw -o no.png \
+    bad 2 "--accel 'bezier': must be none, block, bisect, seed, best, rival, hull, aligned, aligned-best or aligned-paper" "$vodr" reference $raw -o no.png \
         --accel bezier
     bad 2 "--accel hull does not go with filter=linear" "$vodr" reference $raw -o no.png --accel hull
     bad 2 "--filter 'cubic': must be nearest, linear, cardinal or bspline" "$vodr" reference $raw -o no.png --filter cubic
@@ -202,6 +202,25 @@ expect "machine list has paper-32" '^paper-32 ' ../out
             done
         done
     done
+    for how in aligned 'aligned --copies 1' aligned-best 'aligned-best --simd portable'; do
+        good "reference --filter bspline --accel $how" "$vodr" reference $raw --filter bspline --blend mip --view 30,20 \
+            --accel $how --raw t.rgba
+        same "draws the same bytes" r.rgba t.rgba
+    done
+    for how in '' '--theta plane' '--copies 1'; do
+        # shellcheck disable=SC2086 # words
+        "$vodr" reference $raw --filter bspline --accel aligned-paper $how --view 30,20 --raw t.rgba --stats t.json >t.txt
+        expect "aligned-paper $how: PSNR" 'PSNR [0-9.inf]* dB against the usual frame' t.txt
+        expect "aligned-paper $how: stats" '"theta_deg": -*[0-9.]*' t.json
+    done
+    expect 'aligned-paper: its copies' '^coefficients *1 copy$' t.txt
+    rm -f t.txt t.json
+    bad 2 "--accel aligned does not go with filter=cardinal, which has none, best, rival, hull" "$vodr" reference $raw -o no.png \
+        --filter cardinal --accel aligned
+    bad 2 "--theta 'up': must be box or plane" "$vodr" reference $raw -o no.png --theta up
+    bad 2 "--theta goes with --accel aligned-paper" "$vodr" reference $raw -o no.png --filter bspline --accel aligned --theta box
+    bad 2 "--copies '2': must be 1 or 3" "$vodr" reference $raw -o no.png --copies 2
+    bad 2 "--copies goes with --accel aligned, aligned-best and aligned-paper" "$vodr" reference $raw -o no.png --copies 1
     good "reference --filter nearest" "$vodr" reference $raw --filter nearest --raw r.rgba
     good "reference --set filter=nearest" "$vodr" reference $raw --set filter=nearest --raw t.rgba
     same "draws the same bytes" r.rgba t.rgba

@@ -77,7 +77,8 @@ offers 'render --zoom ' ''
 offers 'reference --device ' cpu cuda
 offers 'reference --method ' slices raycast
 offers 'reference --numbers ' fixed float double texture
-offers 'reference --accel ' none block bisect seed best rival hull
+offers 'reference --accel ' none block bisect seed best rival hull aligned aligned-best aligned-paper
+offers 'reference --theta ' box plane
 offers 'reference --filter ' nearest linear cardinal bspline
 offers 'reference --shading ' none phong
 offers 'sweep --plot-type ' line bar heat pareto

@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const reference_accel accels[] = {REFERENCE_ACCEL_NONE, REFERENCE_ACCEL_RIVAL, REFERENCE_ACCEL_HULL,
-                                         REFERENCE_ACCEL_BEST, REFERENCE_ACCEL_UNSAFE};
+static const reference_accel accels[] = {REFERENCE_ACCEL_NONE,  REFERENCE_ACCEL_RIVAL,   REFERENCE_ACCEL_HULL,
+                                         REFERENCE_ACCEL_BEST,  REFERENCE_ACCEL_ALIGNED, REFERENCE_ACCEL_ALIGNED_BEST,
+                                         REFERENCE_ACCEL_UNSAFE};
 
 const char *cubic_accel_name(reference_accel accel)
 {
@@ -15,6 +16,9 @@ const char *cubic_accel_name(reference_accel accel)
     case REFERENCE_ACCEL_RIVAL: return "rival";
     case REFERENCE_ACCEL_HULL: return "hull";
     case REFERENCE_ACCEL_BEST: return "best";
+    case REFERENCE_ACCEL_ALIGNED: return "aligned";
+    case REFERENCE_ACCEL_ALIGNED_BEST: return "aligned-best";
+    case REFERENCE_ACCEL_ALIGNED_PAPER: return "aligned-paper";
     default: return "unsafe";
     }
 }
@@ -64,6 +68,7 @@ static reference_march_job random_job(test_case *c, double scale, double offset,
         job.window_scale = -job.window_scale;
         job.window_offset = 1 - job.window_offset;
     }
+    job.copies = rng_one_in(r, 4) ? 1 : 0;
     if (by_gradient)
         job.table.gradient_most = rng_real(r, 0.05, 1);
     return job;

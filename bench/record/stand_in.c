@@ -45,7 +45,7 @@ uint16_t *stand_in_read(const stand_in *s)
     return NULL;
 }
 
-bool stand_in_rays(const stand_in *s, int view, reference_camera *rays)
+static bool rays_from(const stand_in *s, double azimuth_deg, double elevation_deg, reference_camera *rays)
 {
     static const double spacing[3] = {1, 1, 1};
     volume geometry = {.spacing = {1, 1, 1}, .axis = {0, 1, 2}, .sign = {1, 1, 1}};
@@ -54,8 +54,8 @@ bool stand_in_rays(const stand_in *s, int view, reference_camera *rays)
     vodr_view registers;
     double depth;
     memcpy(geometry.dims_vox, s->to, sizeof geometry.dims_vox);
-    c.azimuth_deg = views[view].azimuth_deg;
-    c.elevation_deg = views[view].elevation_deg;
+    c.azimuth_deg = azimuth_deg;
+    c.elevation_deg = elevation_deg;
     c.width_px = c.height_px = s->side_px;
     c.slices = s->to[2];
     c.zoom = (double)s->side_px / (s->to[0] > s->to[1] ? s->to[0] : s->to[1]);
@@ -65,6 +65,17 @@ bool stand_in_rays(const stand_in *s, int view, reference_camera *rays)
     }
     *rays = reference_camera_rays(&registers, spacing, 1);
     return true;
+}
+
+bool stand_in_rays(const stand_in *s, int view, reference_camera *rays)
+{
+    return rays_from(s, views[view].azimuth_deg, views[view].elevation_deg, rays);
+}
+
+bool stand_in_orbit(const stand_in *s, int frame, int frames, reference_camera *rays)
+{
+    const double turn = (double)frame / frames;
+    return rays_from(s, 360 * turn - 180, 75 * sin(6 * acos(-1) * turn), rays);
 }
 
 const char *stand_in_view(int view)

@@ -22,4 +22,7 @@ uint16_t *stand_in_read(const stand_in *s);
 bool stand_in_rays(const stand_in *s, int view, reference_camera *camera);
 const char *stand_in_view(int view);
 
+/* The same of a frame of an orbit: once round, and thrice up and down by 75 degrees. */
+bool stand_in_orbit(const stand_in *s, int frame, int frames, reference_camera *camera);
+
 #endif

@@ -6,7 +6,8 @@
  * VOLUME: SIDE_VOX^3 bytes. The first writes the coefficients of its B-spline as floats, which teem's own B-spline
  * kernel is given. PICTURE: SIDE_PX^2 doubles of mrender (teem_mip.py of the peers says how its view is made):
  * parallel, the volume turned by RX, then RY degrees, STEPS samples along an edge. Prints a line of JSON: decibels over
- * the range of voxels, milliseconds of `none` and `best`. */
+ * the range of voxels, milliseconds of `none` and `best`, of a
+ * B-spline of `aligned` too. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,13 +121,14 @@ static int measure(const char *filter, const uint8_t *voxels, int side, const do
                    int threads, int rounds)
 {
     static const double table[8] = {0, 0, 0, 1, 1, 1, 1, 1};
-    static timing none, best;
+    const bool spline = filter[0] == 'b';
+    static timing none, best, aligned;
     const reference_options options = {REFERENCE_CPU, threads, VODR_SIMD_BEST};
     const reference_volume v = {.dims_vox = {side, side, side}, .type = REFERENCE_UINT8, .voxels = voxels};
     const size_t pixels = (size_t)camera.width_px * (size_t)camera.height_px, count = (size_t)rounds;
     const reference_march_job job = {.camera = camera,
                                      .blend = REFERENCE_MIP,
-                                     .filter = filter[0] == 'c' ? REFERENCE_CARDINAL : REFERENCE_BSPLINE,
+                                     .filter = spline ? REFERENCE_BSPLINE : REFERENCE_CARDINAL,
                                      .block_vox = 8,
                                      .termination = 2,
                                      .table = {2, 1, table, 0},
@@ -138,6 +140,7 @@ static int measure(const char *filter, const uint8_t *voxels, int side, const do
     bool good = rgba && reference_open(&options, &v, &r, &error) == REFERENCE_OK;
     for (int round = -1; good && round < rounds; round++)
         good = draw(r, job, REFERENCE_ACCEL_NONE, rgba, round, &none) &&
+               (!spline || draw(r, job, REFERENCE_ACCEL_ALIGNED, rgba, round, &aligned)) &&
                draw(r, job, REFERENCE_ACCEL_BEST, rgba, round, &best);
     if (good) {
         const double psnr = decibels(rgba, teem, pixels, &farthest);
@@ -146,9 +149,13 @@ static int measure(const char *filter, const uint8_t *voxels, int side, const do
         printf("{\"result\": \"teem\", \"device\": \"%s\", \"filter\": \"%s\", \"psnr\": %.2f, \"farthest\": %.6f, "
                "\"none_ms\": %.2f, \"none_cpu_ms\": %.2f, \"best_ms\": %.2f, \"best_cpu_ms\": %.2f, \"none_samples\": "
                "%llu, "
-               "\"best_samples\": %llu}\n",
+               "\"best_samples\": %llu",
                reference_device_name(r), filter, psnr, farthest, ms, cpu_ms, best_ms, best_cpu_ms,
                (unsigned long long)none.samples, (unsigned long long)best.samples);
+        if (spline)
+            printf(", \"aligned_ms\": %.2f, \"aligned_cpu_ms\": %.2f", stopwatch_median(aligned.ms, count),
+                   stopwatch_median(aligned.cpu_ms, count));
+        puts("}");
     }
     reference_close(r);
     free(rgba);
