@@ -87,7 +87,7 @@ static void draw(clocked_counts *c, const block_outs *before, const block_outs *
         c->sums->n.texture_load_bytes += (uint64_t)before->texture_unit.load.bytes;
     if (after->texture_unit.fetch.valid)
         c->sums->n.texture_load_bytes +=
-            (uint64_t)density_bytes(c->machine) * (c->machine->filter == VODR_FILTER_LINEAR ? 8 : 1);
+            (uint64_t)(density_bytes(c->machine) * filter_fetches(c->machine) / filter_fetch_cycles(c->machine));
 }
 
 /* A fragment goes from the pixel cache's door. */
@@ -144,13 +144,21 @@ static void account(clocked_counts *c, vodr_block block, uint8_t status)
     c->cycles.stalls[status - BLOCK_STALLED] += block != VODR_BLOCK_TEXTURE_UNIT;
 }
 
+/* Of a stalled rasterizer: while the texture unit fetches for the fragment before, that is the cause. */
+static uint8_t rasterizer_status(const block_outs *o)
+{
+    const uint8_t status = o->rasterizer.report.status;
+    const bool fetches = o->texture_unit.report.status == BLOCK_BUSY;
+    return status >= BLOCK_STALLED && fetches ? BLOCK_STALLED + VODR_STALL_TEXTURE_FETCH : status;
+}
+
 void clocked_counts_cycle(clocked_counts *c, const block_outs *before, const block_outs *after)
 {
     draw(c, before, after);
     move_pixels(c, before, after);
     account(c, VODR_BLOCK_VOLUME_DIVIDER, after->volume_divider.report.status);
     account(c, VODR_BLOCK_SLICE_GENERATOR, after->slice_generator.report.status);
-    account(c, VODR_BLOCK_RASTERIZER, after->rasterizer.report.status);
+    account(c, VODR_BLOCK_RASTERIZER, rasterizer_status(after));
     account(c, VODR_BLOCK_TEXTURE_UNIT, after->texture_unit.report.status);
     account(c, VODR_BLOCK_ALPHA_BLENDER, after->alpha_blender.report.status);
     account(c, VODR_BLOCK_PIXEL_CACHE, after->pixel_cache.report.status);

@@ -64,11 +64,12 @@ static void skip_resident(loader *l, int64_t *number)
         (*number)++;
 }
 
-void loader_clock(loader *l, const texture_unit_in *in, load_port *out)
+void loader_clock(loader *l, const texture_unit_in *in, bool fetches, load_port *out)
 {
     if (in->brick->fresh)
         add_visit(l, in->brick);
     l->drawn += in->fragment->visit_done;
+    l->drained = fetches ? l->drained : l->drawn;
     l->asked += in->load->granted;
     if (out->valid && in->load->ready)
         out->valid = false;
@@ -77,7 +78,7 @@ void loader_clock(loader *l, const texture_unit_in *in, load_port *out)
     skip_resident(l, &l->loaded);
     skip_resident(l, &l->asked);
     bool underway = l->wanted > l->asked;
-    if (underway || l->asked == l->known || l->asked - l->buffer_count >= l->drawn)
+    if (underway || l->asked == l->known || l->asked - l->buffer_count >= l->drained)
         return;
     const loader_visit *v = visit_at(l, l->asked);
     l->wanted = l->asked + 1;

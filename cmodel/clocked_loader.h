@@ -26,15 +26,16 @@ typedef struct loader {
     int last_buffer;                    /* of the visit that came last */
     loader_visit visits[LOADER_VISITS]; /* by number */
     int64_t known, wanted, asked;       /* visits that came; up to which the bus was asked, and has granted in full */
-    int64_t loaded, drawn;              /* that have their brick; that the rasterizer has gone through */
-    int64_t done_bytes;                 /* of the brick that comes */
+    int64_t loaded, drawn, drained; /* that have their brick; that the rasterizer has gone through; and the fetches */
+    int64_t done_bytes;             /* of the brick that comes */
 } loader;
 
 /* Visits of `whole` need no loading. */
 void loader_start(loader *l, const block_setup *setup, texture_buffer *buffers);
 
-/* One cycle: takes visits and data in, asks for bricks. */
-void loader_clock(loader *l, const texture_unit_in *in, load_port *out);
+/* One cycle: takes visits and data in, asks for bricks. fetches: voxels are fetched in it for a fragment that was
+ * accepted before. */
+void loader_clock(loader *l, const texture_unit_in *in, bool fetches, load_port *out);
 
 /* Whether the visit that is drawn next, or now, has its brick. */
 bool loader_ready(const loader *l);

@@ -6,6 +6,7 @@
 
 #include "clocked_blocks.h"
 #include "clocked_loader.h"
+#include "layout.h"
 #include "pixel_word.h"
 #include "ring.h"
 
@@ -21,7 +22,6 @@ typedef struct shaded {
 typedef struct fetching {
     int32_t x, y;
     int64_t a[3];
-    fetch_port fetch;
     int64_t cycle;
 } fetching;
 
@@ -35,6 +35,8 @@ typedef struct unit_state {
         texture; /* filter and tables; with a brick's densities in each buffer, or a fragment's voxels in one */
     bool whole;
     int64_t now, latency, room, count; /* of fragments accepted and not gone */
+    int64_t free_cycle;                /* in which the banks have fetched for the last fragment */
+    int32_t groups, asked, got;        /* whole: of eight voxels, a fragment's; of the last one; of the oldest */
     loader loader;
     shaded_ring fifo;
     fetching_ring fetches;
@@ -55,17 +57,29 @@ static void shade(unit_state *s, int32_t x, int32_t y, const int64_t a[3], int64
                                         .cycle = cycle});
 }
 
-/* Which voxels a fragment's filter takes. */
-static fetch_port fetch_of(const unit_state *s, const int64_t a[3])
+/* The first voxel of a fragment's filter along an axis, which may lie outside the volume. */
+static int32_t first_voxel(const unit_state *s, const int64_t a[3], int c)
+{
+    int64_t position = s->view->base[c] + (a[c] >> s->view->shift), half = (int64_t)1 << (VODR_POSITION_BITS - 1);
+    if (s->machine->filter == VODR_FILTER_NEAREST)
+        return (int32_t)(position >> VODR_POSITION_BITS);
+    return (int32_t)((position - half) >> VODR_POSITION_BITS) - (filter_is_cubic(s->machine) ? 1 : 0);
+}
+
+static int32_t inside(const unit_state *s, int32_t i, int c)
+{
+    int32_t last = s->texture.volume->dims_vox[c] - 1;
+    return i < 0 ? 0 : i > last ? last : i;
+}
+
+/* Which voxels a fragment's filter takes: one, a cube of two, or of a cube of four the part `group`. */
+static fetch_port fetch_of(const unit_state *s, const int64_t a[3], int32_t group)
 {
     fetch_port f = {.valid = true};
-    bool linear = s->machine->filter == VODR_FILTER_LINEAR;
     for (int c = 0; c < 3; c++) {
-        int64_t position = s->view->base[c] + (a[c] >> s->view->shift), half = (int64_t)1 << (VODR_POSITION_BITS - 1);
-        int32_t i = (int32_t)((position - (linear ? half : 0)) >> VODR_POSITION_BITS);
-        int32_t last = s->texture.volume->dims_vox[c] - 1;
-        f.lo[c] = i < 0 ? 0 : i;
-        f.hi[c] = linear ? (i + 1 < last ? i + 1 : last) : i;
+        int32_t i = first_voxel(s, a, c) + 2 * (group >> c & 1);
+        f.lo[c] = inside(s, i, c);
+        f.hi[c] = s->machine->filter == VODR_FILTER_NEAREST ? f.lo[c] : inside(s, i + 1, c);
     }
     return f;
 }
@@ -73,36 +87,47 @@ static fetch_port fetch_of(const unit_state *s, const int64_t a[3])
 static void accept(unit_state *s, const fragment_port *f)
 {
     s->count++;
+    s->free_cycle = s->now + filter_fetch_cycles(s->machine);
     if (!s->whole) {
         s->texture.current = loader_buffer(&s->loader);
         shade(s, f->x, f->y, f->a, s->now + s->latency);
         return;
     }
-    s->out.fetch = fetch_of(s, f->a);
-    fetching_ring_push(&s->fetches, (fetching){.x = f->x,
-                                               .y = f->y,
-                                               .a = {f->a[0], f->a[1], f->a[2]},
-                                               .fetch = s->out.fetch,
-                                               .cycle = s->now + s->latency});
+    s->asked = 0;
+    fetching_ring_push(
+        &s->fetches, (fetching){.x = f->x, .y = f->y, .a = {f->a[0], f->a[1], f->a[2]}, .cycle = s->now + s->latency});
 }
 
-/* The voxels of the oldest fragment that waits for some. */
+/* Asks external memory for the next voxels of the fragment that was accepted last. */
+static void ask(unit_state *s)
+{
+    s->out.fetch.valid = s->asked < s->groups;
+    if (s->out.fetch.valid)
+        s->out.fetch = fetch_of(s, fetching_ring_back(&s->fetches)->a, s->asked++);
+}
+
+/* Voxels of the oldest fragment that waits for some. */
 static void fetched(unit_state *s, const voxels_port *voxels)
 {
     const fetching *f = fetching_ring_front(&s->fetches);
+    const fetch_port first = fetch_of(s, f->a, 0), last = fetch_of(s, f->a, s->groups - 1);
+    const fetch_port here = fetch_of(s, f->a, s->got);
     texture_buffer *b = &s->texture.buffers[0];
-    uint16_t *to = b->densities;
+    int32_t size[3];
     for (int c = 0; c < 3; c++) {
-        b->region.lo[c] = f->fetch.lo[c];
-        b->region.hi[c] = f->fetch.hi[c] + 1;
+        b->region.lo[c] = first.lo[c];
+        b->region.hi[c] = last.hi[c] + 1;
+        size[c] = b->region.hi[c] - b->region.lo[c];
     }
     for (int i = 0; i < 8; i++) { /* hi is lo at the volume's sides, and in `nearest` */
-        bool twice = false;
+        int32_t at[3];
         for (int c = 0; c < 3; c++)
-            twice |= (i >> c & 1) && f->fetch.lo[c] == f->fetch.hi[c];
-        if (!twice)
-            *to++ = voxels->density[i];
+            at[c] = (i >> c & 1 ? here.hi[c] : here.lo[c]) - first.lo[c];
+        b->densities[(at[2] * size[1] + at[1]) * size[0] + at[0]] = voxels->density[i];
     }
+    if (++s->got < s->groups)
+        return;
+    s->got = 0;
     shade(s, f->x, f->y, f->a, f->cycle);
     fetching_ring_pop(&s->fetches);
 }
@@ -123,22 +148,24 @@ static void clock(void *state, const texture_unit_in *in, texture_unit_out *out)
     unit_state *s = state;
     accept_port *door = &s->out.fragment;
     report_port *report = &s->out.report;
-    s->out.fetch.valid = false;
+    const bool fetches = s->now < s->free_cycle; /* for a fragment accepted before */
     s->out.colour.valid &= !in->colour->ready;
     s->count -= in->colour->gone;
     report->status = BLOCK_IDLE;
     if (in->voxels->valid)
         fetched(s, in->voxels);
-    if (in->fragment->valid && door->ready) {
+    if (in->fragment->valid && door->ready)
         accept(s, in->fragment);
+    if (s->now < s->free_cycle) {
         report->status = BLOCK_BUSY;
     } else if (in->fragment->valid) {
         report->status = BLOCK_STALLED + (door->loading ? VODR_STALL_TEXTURE_LOAD : VODR_STALL_FRAGMENT_FIFO);
     }
+    ask(s);
     show(s);
-    loader_clock(&s->loader, in, &s->out.load);
+    loader_clock(&s->loader, in, fetches, &s->out.load);
     door->loading = !loader_ready(&s->loader);
-    door->ready = !door->loading && s->count < s->room;
+    door->ready = !door->loading && s->count < s->room && s->now + 1 >= s->free_cycle;
     report->idle = s->count == 0;
     s->now++;
     *out = s->out;
@@ -167,8 +194,9 @@ bool clocked_texture_unit(const block_setup *setup, texture_unit_face *face, tex
     s->texture = *setup->tables;
     s->texture.whole = false; /* what the filter takes lies in a buffer in either case */
     s->room = m->fragment_fifo + (s->whole ? m->mem_latency_cycles : 0);
-    /* One cycle is the link's to the cache. */
-    s->latency = m->texture_latency_cycles + (s->whole ? m->mem_latency_cycles : 0) - 1;
+    s->groups = s->asked = s->whole ? filter_fetch_cycles(m) : 0;
+    /* One cycle is the link's to the cache; in the last that fetches the filter has its voxels. */
+    s->latency = m->texture_latency_cycles + (s->whole ? m->mem_latency_cycles : 0) + filter_fetch_cycles(m) - 2;
     s->out.fragment.loading = true;
     s->out.report.idle = true;
     *reset = s->out;

@@ -2,11 +2,12 @@
 #include <stdlib.h>
 
 #include "clocked_blocks.h"
+#include "layout.h"
 #include "voxels.h"
 
 typedef struct memory_state {
     const vodr_volume *volume;
-    int32_t density_bits;
+    int32_t stored_bits;
     int32_t at, latency;
     voxels_port *ring; /* answers, by the cycle in which they were asked for; `at`: in this one */
     voxel_memory_out out;
@@ -21,7 +22,7 @@ static void clock(void *state, const voxel_memory_in *in, voxel_memory_out *out)
     for (int i = 0; i < 8 && f->valid; i++) {
         size_t voxel = voxel_index(s->volume->dims_vox, i & 1 ? f->hi[0] : f->lo[0], i & 2 ? f->hi[1] : f->lo[1],
                                    i & 4 ? f->hi[2] : f->lo[2]);
-        voxels_row(s->volume, s->density_bits, voxel, 1, &v->density[i]);
+        voxels_row(s->volume, s->stored_bits, voxel, 1, &v->density[i]);
     }
     s->at = s->at + 1 < s->latency ? s->at + 1 : 0;
     out->voxels.valid = s->ring[s->at].valid;
@@ -43,7 +44,7 @@ bool clocked_voxel_memory(const block_setup *setup, voxel_memory_face *face, vox
     if (!s)
         return false;
     s->volume = setup->volume;
-    s->density_bits = setup->machine->density_bits;
+    s->stored_bits = stored_bits(setup->machine);
     s->latency = setup->machine->mem_latency_cycles;
     s->ring = calloc((size_t)s->latency, sizeof *s->ring);
     *reset = s->out;

@@ -44,11 +44,12 @@ cycles *cycles_start(const vodr_machine *m, const vodr_view *view)
     c->eager = m->traversal == VODR_TRAVERSAL_WHOLE;
     c->nonblocking = m->nonblocking;
     c->through = m->write_policy == VODR_WRITE_POLICY_THROUGH;
-    c->latency = m->texture_latency_cycles + (c->eager ? m->mem_latency_cycles : 0);
+    c->fetch_cycles = filter_fetch_cycles(m);
+    c->latency = m->texture_latency_cycles + (c->eager ? m->mem_latency_cycles : 0) + c->fetch_cycles - 1;
     c->fifo = m->fragment_fifo + (c->eager ? m->mem_latency_cycles : 0);
     c->line_bytes = line_bytes(m);
     c->pixel_bytes = pixel_bytes(m);
-    c->glides = !c->nonblocking && !c->through && c->latency < c->fifo;
+    c->glides = !c->nonblocking && !c->through && c->fetch_cycles == 1 && c->latency < c->fifo;
     c->texture_base = c->layout.lines * line_bytes(m);
     c->memory = memory_of(m);
     c->announced = c->current = c->write_line = -1;
@@ -234,7 +235,7 @@ bool cycles_finish(cycles *c, int64_t work_cycles, vodr_cycles *result)
     int64_t searched = (c->announced < 0 ? -1 : visit_at(c, c->announced)->divided) + work_cycles;
     flush(c, searched);
     n->blocks[VODR_BLOCK_RASTERIZER].busy += (uint64_t)c->accepted;
-    n->blocks[VODR_BLOCK_TEXTURE_UNIT].busy = (uint64_t)c->accepted;
+    n->blocks[VODR_BLOCK_TEXTURE_UNIT].busy = (uint64_t)(c->accepted * c->fetch_cycles);
     n->blocks[VODR_BLOCK_ALPHA_BLENDER].busy = (uint64_t)c->popped;
     n->blocks[VODR_BLOCK_PIXEL_CACHE].busy = (uint64_t)c->read_count;
     happened(c, max64(c->raster - 1, c->last_pop));

@@ -54,7 +54,8 @@ static void take_slice(cycles *c)
 static bool offer(cycles *c, const cycle_op *op)
 {
     settle_raster(c);
-    int64_t cycle = c->raster, length = op->px.count - c->op_done, number = c->accepted - c->fifo;
+    int64_t idle = max64(c->raster, c->fetched), cycle = idle, number = c->accepted - c->fifo;
+    int64_t length = c->fetch_cycles == 1 ? op->px.count - c->op_done : 1;
     if (c->loading) {
         const visit_state *v = visit_at(c, c->current);
         if (v->loaded == CYCLE_UNKNOWN)
@@ -68,7 +69,8 @@ static bool offer(cycles *c, const cycle_op *op)
         open = max64(cycle, stretch_cycle(&c->pops, number, &slope) + 1);
     }
     length = slope < length ? slope : length;
-    c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(cycle - c->raster);
+    c->n.stalls[VODR_STALL_TEXTURE_FETCH] += (uint64_t)(idle - c->raster);
+    c->n.stalls[VODR_STALL_TEXTURE_LOAD] += (uint64_t)(cycle - idle);
     c->n.stalls[VODR_STALL_FRAGMENT_FIFO] += (uint64_t)(open - cycle);
     c->loading = false;
     segment *s = segment_ring_add(&c->door);
@@ -85,6 +87,7 @@ static bool offer(cycles *c, const cycle_op *op)
     c->accepted += length;
     c->visit_accepted += length;
     c->raster = open + length;
+    c->fetched = c->raster - 1 + c->fetch_cycles;
     c->op_done += (int32_t)length;
     return true;
 }
@@ -202,6 +205,6 @@ bool cycles_advance_raster(cycles *c)
         return moved;
     settle_raster(c);
     if (c->current >= 0 && !c->eager)
-        visit_at(c, c->current)->drained = c->raster - 1;
+        visit_at(c, c->current)->drained = max64(c->raster, c->fetched) - 1;
     return moved;
 }

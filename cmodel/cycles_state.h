@@ -87,7 +87,7 @@ typedef enum miss_state { MISS_NONE, MISS_EVICT, MISS_FILL } miss_state;
 struct cycles {
     const vodr_machine *m;
     fb_layout layout;
-    int64_t latency, fifo, texture_base, line_bytes, pixel_bytes;
+    int64_t latency, fifo, fetch_cycles, texture_base, line_bytes, pixel_bytes;
     bool eager, nonblocking, through, failed, ended;
     vodr_cycles n;
     int64_t last; /* cycle in which something happened */
@@ -101,10 +101,11 @@ struct cycles {
     int64_t announced, current;              /* numbers of visits; -1: none */
     bool loading;                            /* the current visit's first fragment has not been accepted */
     int64_t visit_fragments, visit_accepted; /* of the current visit */
-    bool glides;                             /* a blocking cache, and a FIFO longer than the way to the blender */
+    bool glides; /* a blocking cache, a fragment accepted each cycle, a FIFO longer than the way to the blender */
 
     int64_t brick_taken, slice_made, slice_taken, raster, accepted;
-    bool glided; /* room in the FIFO has yet to delay the rasterizer */
+    int64_t fetched; /* the cycle after the last fetch */
+    bool glided;     /* room in the FIFO has yet to delay the rasterizer */
 
     segment_ring door; /* accepted, not yet popped */
     stretch_ring pops; /* by fragment */

@@ -38,16 +38,38 @@ static inline int32_t tile_px(const vodr_machine *m)
     return t < line ? line : t - t % line;
 }
 
+static inline bool filter_is_cubic(const vodr_machine *m)
+{
+    return m->filter == VODR_FILTER_CARDINAL || m->filter == VODR_FILTER_BSPLINE;
+}
+
 /* Voxels that a sample needs beyond its brick, on each side. */
 static inline int32_t filter_border_vox(const vodr_machine *m)
 {
-    return m->filter == VODR_FILTER_LINEAR ? 1 : 0;
+    return filter_is_cubic(m) ? 2 : m->filter == VODR_FILTER_LINEAR ? 1 : 0;
 }
 
-/* Bytes of one density in texture memory. */
+/* Voxels that a fragment fetches. */
+static inline int32_t filter_fetches(const vodr_machine *m)
+{
+    return filter_is_cubic(m) ? 64 : m->filter == VODR_FILTER_LINEAR ? 8 : 1;
+}
+
+/* Cycles that this takes: texture memory has eight banks. */
+static inline int32_t filter_fetch_cycles(const vodr_machine *m)
+{
+    return filter_is_cubic(m) ? 8 : 1;
+}
+
+/* What texture memory holds of a voxel: its density, or with filter=bspline its signed coefficient. */
+static inline int32_t stored_bits(const vodr_machine *m)
+{
+    return m->filter == VODR_FILTER_BSPLINE ? 16 : m->density_bits;
+}
+
 static inline int32_t density_bytes(const vodr_machine *m)
 {
-    return m->density_bits > 8 ? 2 : 1;
+    return stored_bits(m) > 8 ? 2 : 1;
 }
 
 /* Memory that a brick of these edges takes, its border with it and whether or not the volume cuts it: whole bursts. */

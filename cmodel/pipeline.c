@@ -299,6 +299,10 @@ static vodr_status check_volume(const vodr_volume *v, const vodr_machine *m, vod
                              v->dims_vox[0], v->dims_vox[1], v->dims_vox[2], VODR_MAX_DIM_VOX);
     if (v->voxel_bytes != 1 && v->voxel_bytes != 2)
         return vodr_fail(error, VODR_INVALID, "voxel_bytes is %d but must be 1 or 2", v->voxel_bytes);
+    if (m->filter == VODR_FILTER_BSPLINE && v->voxel_bytes != 2)
+        return vodr_fail(error, VODR_INVALID,
+                         "voxel_bytes is %d but must be 2: filter=bspline takes coefficients of 16 bits, not densities",
+                         v->voxel_bytes);
     if (v->voxel_bytes == 1 && !v->map && m->density_bits != 8)
         return vodr_fail(error, VODR_INVALID, "8-bit voxels without a map need density_bits=8, not %d",
                          m->density_bits);

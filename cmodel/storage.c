@@ -39,7 +39,7 @@ static void read_brick(const storage *s, int64_t brick, int64_t bytes, uint8_t *
         for (int32_t y = region.lo[1]; y < region.hi[1]; y++)
             for (int32_t x = region.lo[0]; x < region.hi[0] && bytes > 0; x++, data += size, bytes -= size) {
                 uint16_t density;
-                voxels_row(s->volume, s->machine->density_bits, voxel_index(s->volume->dims_vox, x, y, z), 1, &density);
+                voxels_row(s->volume, stored_bits(s->machine), voxel_index(s->volume->dims_vox, x, y, z), 1, &density);
                 word_store(data, density, size);
             }
 }

@@ -57,11 +57,12 @@ vodr_status texture_unit_start(texture_unit *t, const vodr_machine *m, const vod
     *t = (texture_unit){.volume = volume,
                         .view = view,
                         .filter = (vodr_filter)m->filter,
-                        .density_bits = m->density_bits,
+                        .stored_bits = stored_bits(m),
                         .weight_bits = m->weight_bits,
                         .guard_bits = m->guard_bits,
                         .border_vox = filter_border_vox(m),
                         .voxel_bytes = density_bytes(m),
+                        .fetches = filter_fetches(m),
                         .whole = m->traversal == VODR_TRAVERSAL_WHOLE,
                         .buffer_count = m->double_buffer ? 2 : 1};
     if (table->count != count)
@@ -71,7 +72,8 @@ vodr_status texture_unit_start(texture_unit *t, const vodr_machine *m, const vod
     t->readout = malloc(count * sizeof *t->readout);
     t->transparent_to = malloc(count * sizeof *t->transparent_to);
     t->dead = malloc(count);
-    if (!t->colours || !t->readout || !t->transparent_to || !t->dead)
+    bool weighs = cubic_start(&t->cubic, m);
+    if (!t->colours || !t->readout || !t->transparent_to || !t->dead || !weighs)
         return vodr_fail(error, VODR_NO_MEMORY, "no memory for a table of %zu entries", count);
     vodr_status status = convert_table(t, m, table, error);
     if (status == VODR_OK)
@@ -114,7 +116,7 @@ uint64_t texture_unit_load(texture_unit *t, size_t brick, const vox_box *box)
     uint16_t *row = b->densities;
     for (int32_t z = lo[2]; row && z < hi[2]; z++)
         for (int32_t y = lo[1]; y < hi[1]; y++, row += width)
-            voxels_row(t->volume, t->density_bits, voxel_index(t->volume->dims_vox, lo[0], y, z), width, row);
+            voxels_row(t->volume, t->stored_bits, voxel_index(t->volume->dims_vox, lo[0], y, z), width, row);
     return (uint64_t)width * (uint64_t)(hi[1] - lo[1]) * (uint64_t)(hi[2] - lo[2]) * (uint64_t)t->voxel_bytes;
 }
 
@@ -129,7 +131,7 @@ static inline int32_t fetch(const texture_unit *t, bool whole, int32_t x, int32_
 {
     if (whole) {
         uint16_t density;
-        voxels_row(t->volume, t->density_bits, voxel_index(t->volume->dims_vox, x, y, z), 1, &density);
+        voxels_row(t->volume, t->stored_bits, voxel_index(t->volume->dims_vox, x, y, z), 1, &density);
         return density;
     }
     const texture_buffer *b = &t->buffers[t->current];
@@ -176,8 +178,44 @@ static inline int32_t filter_linear(const texture_unit *t, bool whole, const int
     return (lerp(along_y[0], along_y[1], w[2], wb) + half) >> t->guard_bits;
 }
 
-static inline void filter_span(const texture_unit *t, bool whole, bool linear, const brick_slice *slice, const span *s,
-                               uint16_t *densities)
+/* Four voxels along x, whose columns are given. */
+static inline void fetch_row(const texture_unit *t, bool whole, const int32_t x[CUBIC_TAPS], int32_t y, int32_t z,
+                             int32_t row[CUBIC_TAPS])
+{
+    uint16_t stored[CUBIC_TAPS];
+    if (whole && x[3] - x[0] == 3)
+        voxels_row(t->volume, t->stored_bits, voxel_index(t->volume->dims_vox, x[0], y, z), CUBIC_TAPS, stored);
+    for (int i = 0; i < CUBIC_TAPS; i++)
+        row[i] =
+            voxel_value(whole && x[3] - x[0] == 3 ? stored[i] : (uint16_t)fetch(t, whole, x[i], y, z), t->stored_bits);
+}
+
+static inline int32_t filter_cubic(const texture_unit *t, bool whole, const int64_t position[3])
+{
+    int32_t i[3][CUBIC_TAPS], share[3], voxels[CUBIC_VOXELS];
+    for (int c = 0; c < 3; c++) {
+        int64_t p = position[c] - ((int64_t)1 << (VODR_POSITION_BITS - 1));
+        int32_t first = (int32_t)(p >> VODR_POSITION_BITS) - 1, last = t->volume->dims_vox[c] - 1;
+        for (int n = 0; n < CUBIC_TAPS; n++)
+            i[c][n] = clamp(first + n, last);
+        share[c] = (int32_t)(p >> (VODR_POSITION_BITS - t->weight_bits)) & ((1 << t->weight_bits) - 1);
+    }
+    for (int n = 0; n < 16; n++)
+        fetch_row(t, whole, i[0], i[1][n & 3], i[2][n >> 2], voxels + CUBIC_TAPS * n);
+    return cubic_value(&t->cubic, share, voxels);
+}
+
+static inline int32_t filter_at(const texture_unit *t, bool whole, vodr_filter filter, const int64_t position[3])
+{
+    switch (filter) {
+    case VODR_FILTER_NEAREST: return filter_nearest(t, whole, position);
+    case VODR_FILTER_LINEAR: return filter_linear(t, whole, position);
+    default: return filter_cubic(t, whole, position);
+    }
+}
+
+static inline void filter_span(const texture_unit *t, bool whole, vodr_filter filter, const brick_slice *slice,
+                               const span *s, uint16_t *densities)
 {
     int64_t a[3];
     for (int c = 0; c < 3; c++)
@@ -189,26 +227,32 @@ static inline void filter_span(const texture_unit *t, bool whole, bool linear, c
             position[c] = t->view->base[c] + (a[c] >> shift);
             a[c] += n + 1 < s->x1 - s->x0 ? slice->plane.step_u[c] : 0;
         }
-        densities[n] = (uint16_t)(linear ? filter_linear(t, whole, position) : filter_nearest(t, whole, position));
+        densities[n] = (uint16_t)filter_at(t, whole, filter, position);
     }
 }
 
 uint64_t texture_unit_fetched(const texture_unit *t, int32_t count)
 {
-    return t->whole ? (uint64_t)count * (t->filter == VODR_FILTER_LINEAR ? 8 : 1) * (uint64_t)t->voxel_bytes : 0;
+    return t->whole ? (uint64_t)count * (uint64_t)t->fetches * (uint64_t)t->voxel_bytes : 0;
+}
+
+/* A loop of its own for each filter. */
+static inline void filter_by(const texture_unit *t, bool whole, const brick_slice *slice, const span *s,
+                             uint16_t *densities)
+{
+    switch (t->filter) {
+    case VODR_FILTER_NEAREST: filter_span(t, whole, VODR_FILTER_NEAREST, slice, s, densities); break;
+    case VODR_FILTER_LINEAR: filter_span(t, whole, VODR_FILTER_LINEAR, slice, s, densities); break;
+    default: filter_span(t, whole, VODR_FILTER_CARDINAL, slice, s, densities); /* or bspline: weights differ */
+    }
 }
 
 void texture_unit_filter(const texture_unit *t, const brick_slice *slice, const span *s, uint16_t *densities)
 {
-    bool linear = t->filter == VODR_FILTER_LINEAR;
-    if (t->whole && linear)
-        filter_span(t, true, true, slice, s, densities);
-    else if (t->whole)
-        filter_span(t, true, false, slice, s, densities);
-    else if (linear)
-        filter_span(t, false, true, slice, s, densities);
+    if (t->whole)
+        filter_by(t, true, slice, s, densities);
     else
-        filter_span(t, false, false, slice, s, densities);
+        filter_by(t, false, slice, s, densities);
 }
 
 void texture_unit_finish(texture_unit *t)
@@ -219,5 +263,6 @@ void texture_unit_finish(texture_unit *t)
     free(t->readout);
     free(t->transparent_to);
     free(t->dead);
+    cubic_finish(&t->cubic);
     *t = (texture_unit){0};
 }

@@ -6,6 +6,7 @@
 #ifndef VODR_TEXTURE_UNIT_H
 #define VODR_TEXTURE_UNIT_H
 
+#include "cubic.h"
 #include "view.h"
 #include "vodr.h"
 
@@ -13,15 +14,16 @@ typedef struct texture_buffer {
     size_t brick; /* which one it holds */
     bool valid;
     vox_box region;      /* the voxels in it, clipped to the volume */
-    uint16_t *densities; /* x fastest; NULL when only loads are counted */
+    uint16_t *densities; /* as voxels_row() makes them, x fastest; NULL when only loads are counted */
 } texture_buffer;
 
 typedef struct texture_unit {
     const vodr_volume *volume;
     const vodr_view *view;
     vodr_filter filter;
-    int32_t density_bits, weight_bits, guard_bits;
-    int32_t border_vox, voxel_bytes; /* of a density in texture memory */
+    int32_t stored_bits, weight_bits, guard_bits;
+    cubic cubic;                              /* for the cubic filters */
+    int32_t border_vox, voxel_bytes, fetches; /* bytes of a voxel in texture memory, voxels of a fragment */
     bool whole;
     texture_buffer buffers[2];
     int buffer_count, current;

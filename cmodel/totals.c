@@ -20,7 +20,7 @@ void totals_close(vodr_cycles *n, const memory *bus, int64_t last)
     *(bus->machine->nonblocking ? &cache : &blender) += stalls[VODR_STALL_HAZARD];
     close_block(n, VODR_BLOCK_VOLUME_DIVIDER, stalls[VODR_STALL_DIVIDER]);
     close_block(n, VODR_BLOCK_SLICE_GENERATOR, stalls[VODR_STALL_SLICE]);
-    close_block(n, VODR_BLOCK_RASTERIZER, door);
+    close_block(n, VODR_BLOCK_RASTERIZER, door + stalls[VODR_STALL_TEXTURE_FETCH]);
     close_block(n, VODR_BLOCK_TEXTURE_UNIT, door);
     close_block(n, VODR_BLOCK_ALPHA_BLENDER, blender);
     close_block(n, VODR_BLOCK_PIXEL_CACHE, cache);

@@ -69,6 +69,8 @@ vodr_status vodr_machine_check(const vodr_machine *machine, vodr_error *error);
 /* A volume in memory, x fastest, then y, then z. The caller owns the voxels and keeps them for the whole call.
  * voxel_bytes 1: density of voxel v is map[v], or v itself where map is NULL (then density_bits must be 8).
  * voxel_bytes 2: density is the voxel, in native byte order, clamped to 2^density_bits - 1; map is not used.
+ * filter=bspline takes coefficients instead, voxel_bytes 2: int16_t, with 3 fraction bits where density_bits is 8, none
+ * where it is 12 (docs/architecture.md, section 11, says how the application makes them); map is not used.
  * Entries of map are below 2^density_bits. Nothing is copied: a voxel is converted as it enters texture memory. */
 typedef struct vodr_volume {
     int32_t dims_vox[3];
@@ -151,6 +153,7 @@ typedef enum vodr_stall {
     VODR_STALL_FILL,          /* the pixel cache: the line is on its way */
     VODR_STALL_DRAM_ROW,      /* the frame buffer: a row closes and opens */
     VODR_STALL_DRAM_REFRESH,  /* the frame buffer: the memory refreshes */
+    VODR_STALL_TEXTURE_FETCH, /* the rasterizer: the texture unit fetches voxels of the fragment before */
     VODR_STALL_COUNT,
 } vodr_stall;
 

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cubic.h"
 #include "error.h"
 #include "layout.h"
 #include "voxels.h"
@@ -118,7 +119,8 @@ static void find_empty(volume_divider *d, const vodr_machine *m, const vodr_volu
                 vox_box box = brick_box(d, i, i);
                 vox_box reach = voxels_reach(volume->dims_vox, &box, filter_border_vox(m));
                 int32_t min, max;
-                voxels_range(volume, m->density_bits, &reach, &min, &max);
+                voxels_range(volume, stored_bits(m), &reach, &min, &max);
+                filter_range(m, &min, &max);
                 bool empty = transparent_to[m->blend == VODR_BLEND_MIP ? 0 : min] >= max;
                 d->empty[brick_number(d, i)] = empty;
                 d->empty_bricks += empty;

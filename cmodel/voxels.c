@@ -10,9 +10,9 @@ vox_box voxels_reach(const int32_t dims_vox[3], const vox_box *box, int32_t bord
     return reach;
 }
 
-void voxels_row(const vodr_volume *volume, int32_t density_bits, size_t first, int32_t count, uint16_t *densities)
+void voxels_row(const vodr_volume *volume, int32_t bits, size_t first, int32_t count, uint16_t *densities)
 {
-    uint16_t limit = (uint16_t)((1 << density_bits) - 1);
+    uint16_t limit = (uint16_t)((1 << bits) - 1);
     if (volume->voxel_bytes == 2) {
         const uint16_t *voxel = (const uint16_t *)volume->voxels + first;
         for (int32_t i = 0; i < count; i++)
@@ -27,20 +27,21 @@ void voxels_row(const vodr_volume *volume, int32_t density_bits, size_t first, i
         densities[i] = voxel[i];
 }
 
-void voxels_range(const vodr_volume *volume, int32_t density_bits, const vox_box *box, int32_t *min, int32_t *max)
+void voxels_range(const vodr_volume *volume, int32_t bits, const vox_box *box, int32_t *min, int32_t *max)
 {
     enum { CHUNK = 256 };
     uint16_t row[CHUNK];
     *min = INT32_MAX;
-    *max = -1;
+    *max = INT32_MIN;
     for (int32_t z = box->lo[2]; z < box->hi[2]; z++)
         for (int32_t y = box->lo[1]; y < box->hi[1]; y++)
             for (int32_t x = box->lo[0]; x < box->hi[0]; x += CHUNK) {
                 int32_t n = box->hi[0] - x < CHUNK ? box->hi[0] - x : CHUNK;
-                voxels_row(volume, density_bits, voxel_index(volume->dims_vox, x, y, z), n, row);
+                voxels_row(volume, bits, voxel_index(volume->dims_vox, x, y, z), n, row);
                 for (int32_t i = 0; i < n; i++) {
-                    *min = row[i] < *min ? row[i] : *min;
-                    *max = row[i] > *max ? row[i] : *max;
+                    int32_t value = voxel_value(row[i], bits);
+                    *min = value < *min ? value : *min;
+                    *max = value > *max ? value : *max;
                 }
             }
 }

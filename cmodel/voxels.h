@@ -1,4 +1,5 @@
-/* voxels.h - densities of a volume in memory, converted voxel by voxel (vodr.h, vodr_volume). */
+/* voxels.h - densities of a volume in memory, converted voxel by voxel, or its coefficients as they are (vodr.h,
+ * vodr_volume). `bits` is stored_bits() of the machine: 16 are a coefficient's. */
 #ifndef VODR_VOXELS_H
 #define VODR_VOXELS_H
 
@@ -13,10 +14,16 @@ static inline size_t voxel_index(const int32_t dims_vox[3], int32_t x, int32_t y
     return ((size_t)z * dims_vox[1] + y) * dims_vox[0] + x;
 }
 
-/* Densities of the `count` voxels from index `first` on. */
-void voxels_row(const vodr_volume *volume, int32_t density_bits, size_t first, int32_t count, uint16_t *densities);
+/* The number that texture memory holds for a voxel: coefficients are signed. */
+static inline int32_t voxel_value(uint16_t stored, int32_t bits)
+{
+    return bits == 16 ? (int16_t)stored : stored;
+}
 
-/* Smallest and largest density in `box`. */
-void voxels_range(const vodr_volume *volume, int32_t density_bits, const vox_box *box, int32_t *min, int32_t *max);
+/* Densities of the `count` voxels from index `first` on, or their coefficients in two's complement. */
+void voxels_row(const vodr_volume *volume, int32_t bits, size_t first, int32_t count, uint16_t *densities);
+
+/* Smallest and largest of those in `box`. */
+void voxels_range(const vodr_volume *volume, int32_t bits, const vox_box *box, int32_t *min, int32_t *max);
 
 #endif

@@ -133,6 +133,19 @@ static double lerp_pj(const energy_table *e, const vodr_machine *m)
     return 2 * add_pj(e, bits) + multiply_pj(e, bits, m->weight_bits);
 }
 
+/* Filtering a fragment: 7 interpolations, or 21 sums of four weighted numbers. */
+static double filter_pj(const energy_table *e, const vodr_machine *m)
+{
+    enum { LERPS = 7, SUMS = 21, TAPS = 4, MORE_WEIGHT_BITS = 2, COEFFICIENT_BITS = 16 };
+    const int bits = (m->filter == VODR_FILTER_BSPLINE ? COEFFICIENT_BITS : m->density_bits) + m->guard_bits;
+    const int weight_bits = m->weight_bits + MORE_WEIGHT_BITS;
+    switch ((vodr_filter)m->filter) {
+    case VODR_FILTER_NEAREST: return 0;
+    case VODR_FILTER_LINEAR: return LERPS * lerp_pj(e, m);
+    default: return SUMS * (TAPS * multiply_pj(e, bits, weight_bits) + (TAPS - 1) * add_pj(e, bits + weight_bits));
+    }
+}
+
 /* Blending a pixel: on each channel a product, its rounding to a division by 2^n - 1, and the sum; in mip a compare. */
 static double blend_pj(const energy_table *e, const vodr_machine *m)
 {
@@ -144,12 +157,14 @@ static double blend_pj(const energy_table *e, const vodr_machine *m)
 static void count_energy(costs *c, const vodr_machine *m, const vodr_view *v, const vodr_counters *n,
                          const energy_table *e)
 {
-    enum { POSITION_BITS = 43, COMPONENTS = 3, LERPS = 7, TAPS = 8 };
-    const bool linear = m->filter == VODR_FILTER_LINEAR, mip = m->blend == VODR_BLEND_MIP;
+    enum { POSITION_BITS = 43, COMPONENTS = 3 };
+    static const int fetches[] = {
+        [VODR_FILTER_NEAREST] = 1, [VODR_FILTER_LINEAR] = 8, [VODR_FILTER_CARDINAL] = 64, [VODR_FILTER_BSPLINE] = 64};
+    const bool mip = m->blend == VODR_BLEND_MIP, spline = m->filter == VODR_FILTER_BSPLINE;
     const bool whole = m->traversal == VODR_TRAVERSAL_WHOLE;
     const double accesses = (double)(n->hits + n->misses), fragments = (double)n->fragments;
     const double blends = accesses - (double)n->terminated_fragments;
-    const double pixel_bytes = (double)pixel_bits(m) / 8, voxel_bytes = m->density_bits > 8 ? 2 : 1;
+    const double pixel_bytes = (double)pixel_bits(m) / 8, voxel_bytes = spline || m->density_bits > 8 ? 2 : 1;
     const double filled = (double)n->fb_read_bytes;
     const double emptied = m->write_policy == VODR_WRITE_POLICY_BACK ? (double)n->fb_write_bytes : 0;
 
@@ -158,11 +173,10 @@ static void count_energy(costs *c, const vodr_machine *m, const vodr_view *v, co
                   sram_pj(e, accesses * m->ways * (double)tag_bits(m, v) / 8, c->cache_tag_bits);
     if (!whole)
         c->texture_pj =
-            sram_pj(e, (double)n->texture_load_bytes + fragments * (linear ? TAPS : 1) * voxel_bytes, c->texture_bits);
+            sram_pj(e, (double)n->texture_load_bytes + fragments * fetches[m->filter] * voxel_bytes, c->texture_bits);
     if (!mip)
         c->table_pj = sram_pj(e, fragments * pixel_bytes, c->table_bits);
-    c->arithmetic_pj = fragments * (COMPONENTS * add_pj(e, POSITION_BITS) + (linear ? LERPS * lerp_pj(e, m) : 0)) +
-                       blends * blend_pj(e, m);
+    c->arithmetic_pj = fragments * (COMPONENTS * add_pj(e, POSITION_BITS) + filter_pj(e, m)) + blends * blend_pj(e, m);
 }
 
 costs costs_of(const vodr_machine *machine, const vodr_view *view, const vodr_counters *counters,

@@ -26,6 +26,7 @@ static const char *const stall_names[VODR_STALL_COUNT] = {
     [VODR_STALL_FILL] = "fill",
     [VODR_STALL_DRAM_ROW] = "dram_row",
     [VODR_STALL_DRAM_REFRESH] = "dram_refresh",
+    [VODR_STALL_TEXTURE_FETCH] = "texture_fetch",
 };
 
 json_t *cycle_stats_blocks(const vodr_cycles *c)
@@ -85,6 +86,8 @@ void cycle_stats_bottleneck(const vodr_cycles *c, char *text, size_t size)
         {blocks[VODR_BLOCK_SLICE_GENERATOR].busy, "slice_generator busy", "slice_setup_cycles a slice of a brick"},
         {blocks[VODR_BLOCK_VOLUME_DIVIDER].busy, "volume_divider busy", "bricks bounded, rows looked at"},
         {bus->busy + bus->stalled, "frame_buffer's bus taken", "memory bandwidth"},
+        {stalls[VODR_STALL_TEXTURE_FETCH] ? blocks[VODR_BLOCK_TEXTURE_UNIT].busy : 0, "texture_unit fetches",
+         "a cubic filter's 64 voxels over 8 banks take 8 cycles a fragment"},
         {stalls[VODR_STALL_TEXTURE_LOAD], "texture_unit waits for bricks", memory},
         {full > blender_stalled ? full - blender_stalled : 0, "texture_unit full",
          "fragment_fifo is short for the texture unit's latency"},

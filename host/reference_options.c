@@ -106,7 +106,7 @@ static host_status set_filter(void *target, const option *o, const char *value, 
     if (status != HOST_OK)
         return status;
     w->choice.filter = (reference_filter)i;
-    w->machine_filter = reference_is_cubic(w->choice.filter) ? NULL : filters[i];
+    w->machine_filter = filters[i];
     return HOST_OK;
 }
 
@@ -218,11 +218,13 @@ static host_status refuse_fixed(const reference_wish *w, host_error *error)
 static host_status refuse_cubic(const reference_wish *w, host_error *error)
 {
     const reference_choice *c = &w->choice;
-    const bool fixed = c->fixed, cubic = reference_is_cubic(c->filter);
-    if (cubic && (fixed || c->numbers == REFERENCE_TEXTURE))
-        return host_fail(error, HOST_BAD_INPUT,
-                         "--filter %s does not go with --numbers %s: cardinal and bspline go with float and double",
-                         filters[c->filter], numbers[fixed ? (int)FIXED : (int)c->numbers]);
+    const bool cubic = reference_is_cubic(c->filter);
+    if (cubic && !c->fixed && c->numbers == REFERENCE_TEXTURE)
+        return host_fail(
+            error, HOST_BAD_INPUT,
+            "--filter %s does not go with --numbers texture: cardinal and bspline go with fixed, float and "
+            "double",
+            filters[c->filter]);
     if (w->has_accel && !reference_accel_suits(c->accel, REFERENCE_MIP, cubic ? c->filter : REFERENCE_LINEAR))
         return host_fail(error, HOST_BAD_INPUT, "--accel %s does not go with filter=%s, which has %s", accels[c->accel],
                          filters[cubic ? c->filter : REFERENCE_LINEAR],
@@ -271,6 +273,11 @@ host_status reference_wish_settle(reference_wish *w, view_options *v, host_error
             return status;
         c->accel = REFERENCE_ACCEL_NONE;
     }
+    vodr_machine machine;
+    host_status known = view_options_machine(v, &machine, error);
+    if (known != HOST_OK)
+        return known;
+    c->filter = (reference_filter)machine.filter;
     host_status cubic = refuse_cubic(w, error);
     if (cubic != HOST_OK)
         return cubic;

@@ -84,9 +84,9 @@ static reference_camera camera_of(const scene *s, const reference_choice *c)
 
 reference_filter reference_scene_filter(const scene *s, const reference_choice *c)
 {
-    if (reference_is_cubic(c->filter))
-        return c->filter;
-    return s->machine.filter == VODR_FILTER_NEAREST ? REFERENCE_NEAREST : REFERENCE_LINEAR;
+    _Static_assert((int)VODR_FILTER_CARDINAL == REFERENCE_CARDINAL && (int)VODR_FILTER_BSPLINE == REFERENCE_BSPLINE,
+                   "the machine's filters in their order");
+    return reference_is_cubic(c->filter) ? c->filter : (reference_filter)s->machine.filter;
 }
 
 /* The scene's transfer function as a table of the job, for samples so many finest voxels long. */

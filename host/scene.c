@@ -75,6 +75,8 @@ host_status scene_quantise(scene *s, host_error *error)
 {
     host_status status =
         volume_quantise(&s->volume, s->window_lo, s->window_hi, s->machine.density_bits, &s->densities, error);
+    if (status == HOST_OK && s->machine.filter == VODR_FILTER_BSPLINE)
+        status = volume_coefficients(&s->volume, s->machine.density_bits, &s->densities, error);
     if (status != HOST_OK)
         return status;
     return scene_table(&s->machine, &s->transfer, s->window_lo, s->window_hi, s->depth_vox, &s->entries, &s->table,

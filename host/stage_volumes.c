@@ -94,7 +94,8 @@ static stage_volume *find_node(sweep_stage *s, const stage_volume *wanted)
 {
     for (stage_volume *n = s->volumes; n; n = n->next)
         if (same_voxels(n, wanted->path, &wanted->options) && n->window_lo == wanted->window_lo &&
-            n->window_hi == wanted->window_hi && n->density_bits == wanted->density_bits)
+            n->window_hi == wanted->window_hi && n->density_bits == wanted->density_bits &&
+            n->coefficients == wanted->coefficients)
             return n;
     stage_volume *n = malloc(sizeof *n);
     if (!n)
@@ -134,6 +135,8 @@ static host_status load(stage_volume *n, volume *opened, host_error *error)
     n->volume = *opened;
     *opened = (volume){0};
     status = volume_quantise(&n->volume, n->window_lo, n->window_hi, n->density_bits, &n->densities, error);
+    if (status == HOST_OK && n->coefficients)
+        status = volume_coefficients(&n->volume, n->density_bits, &n->densities, error);
     n->loaded = status == HOST_OK;
     if (!n->loaded)
         volume_close(&n->volume);
@@ -164,9 +167,12 @@ static host_status take(sweep_stage *s, stage_volume *wanted, const view_options
 }
 
 host_status stage_volumes_take(sweep_stage *s, const char *path, const view_options *v, const stage_transfer *t,
-                               int density_bits, stage_volume **taken, bool *refused, host_error *error)
+                               const vodr_machine *m, stage_volume **taken, bool *refused, host_error *error)
 {
-    stage_volume wanted = {.path = path, .options = v->volume, .density_bits = density_bits};
+    stage_volume wanted = {.path = path,
+                           .options = v->volume,
+                           .density_bits = m->density_bits,
+                           .coefficients = m->filter == VODR_FILTER_BSPLINE};
     volume opened = {0};
     *refused = !crop_fits(s, path, &v->volume, error);
     if (*refused)

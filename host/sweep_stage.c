@@ -179,7 +179,7 @@ host_status sweep_stage_draw(sweep_stage *s, uint64_t point, sweep_sample *sampl
     if (status != HOST_OK)
         return status;
     sample->machine = at.machine;
-    status = stage_volumes_take(s, at.volume, &at.view, at.transfer, at.machine.density_bits, &v, &refused, error);
+    status = stage_volumes_take(s, at.volume, &at.view, at.transfer, &at.machine, &v, &refused, error);
     if (status != HOST_OK)
         return status;
     if (!refused) {

@@ -230,7 +230,8 @@ static const option machine_rows[] = {
     {"machine", 0, "NAME|FILE", false, set_machine, "a named machine (`vodr machine list`) or a file (paper-16)"},
     {"set", 0, "PARAM=VALUE", true, set_override, "set a parameter of the machine; may be repeated"},
     {"blend", 0, "MODE", false, set_parameter, "over, under, mip; as --set blend=MODE (over)"},
-    {"filter", 0, "FILTER", false, set_parameter, "nearest, linear; as --set filter=FILTER (linear)"},
+    {"filter", 0, "FILTER", false, set_parameter,
+     "nearest, linear, cardinal, bspline;\nas --set filter=FILTER (linear)"},
     {"traversal", 0, "ORDER", false, set_parameter,
      "whole, layer, column, tile; as --set traversal=ORDER\n"
      "(the machine's)"},

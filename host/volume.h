@@ -76,6 +76,10 @@ bool volume_is_ct(const volume *v);
  * the volume. Callable once. */
 host_status volume_quantise(volume *v, double lo, double hi, int density_bits, vodr_volume *out, host_error *error);
 
+/* Turns densities that volume_quantise() made into the coefficients that filter=bspline takes (spline.h); they replace
+ * the volume's voxels. */
+host_status volume_coefficients(volume *v, int density_bits, vodr_volume *densities, host_error *error);
+
 const char *volume_type_name(volume_type type);
 
 /* Bytes of a stored voxel. */

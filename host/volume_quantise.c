@@ -7,6 +7,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "spline.h"
+
 typedef struct window {
     double lo, hi;
     double most; /* the largest density */
@@ -101,5 +103,25 @@ host_status volume_quantise(volume *v, double lo, double hi, int density_bits, v
         shrink(v, volume_count(v) * (size_t)out->voxel_bytes);
     }
     out->voxels = v->voxels;
+    return HOST_OK;
+}
+
+host_status volume_coefficients(volume *v, int density_bits, vodr_volume *densities, host_error *error)
+{
+    const size_t bytes = volume_count(v) * sizeof(int16_t);
+    int16_t *coefficients = malloc(bytes);
+    if (!coefficients)
+        return host_fail(error, HOST_ENVIRONMENT, "no memory for %zu bytes of coefficients", bytes);
+    host_status status = spline_coefficients(densities, density_bits, coefficients, error);
+    if (status != HOST_OK) {
+        free(coefficients);
+        return status;
+    }
+    volume_free_voxels(v);
+    v->voxels = coefficients;
+    v->bytes = bytes;
+    densities->voxels = coefficients;
+    densities->voxel_bytes = 2;
+    densities->map = NULL;
     return HOST_OK;
 }

@@ -32,9 +32,11 @@ KERNEL bool fixed_inside(const int32_t dims_vox[3], const int64_t position[3])
     return inside;
 }
 
-/* Section 6, densities; index of a voxel of the volume. */
+/* Section 6, densities and coefficients; index of a voxel of the volume. */
 KERNEL int32_t fixed_density(const kernel_fixed *f, int64_t index)
 {
+    if (f->filter == VODR_FILTER_BSPLINE)
+        return ((const int16_t *)f->voxels)[index];
     if (f->voxel_bytes == 1)
         return f->map[((const uint8_t *)f->voxels)[index]];
     int32_t voxel = ((const uint16_t *)f->voxels)[index], most = (1 << f->density_bits) - 1;
@@ -46,10 +48,57 @@ KERNEL int32_t fixed_lerp(int32_t a, int32_t b, int32_t w, int32_t weight_bits)
     return a + (((b - a) * w) >> weight_bits);
 }
 
+/* Section 6, weights of a cubic filter for a share of u/2^bits. */
+KERNEL void fixed_weights(const kernel_fixed *f, int64_t u, int64_t weight[4])
+{
+    const int64_t b = (int64_t)1 << f->weight_bits, b2 = b * b, v = b - u;
+    if (f->filter == VODR_FILTER_CARDINAL) {
+        weight[0] = -(2 * u * v * v / b2);
+        weight[2] = (4 * u * (b2 + 4 * u * b - 3 * u * u) + b2) / (2 * b2);
+        weight[3] = -(2 * u * u * v / b2);
+    } else {
+        weight[0] = 2 * v * v * v / (3 * b2);
+        weight[2] = (4 * (b2 * b + 3 * u * b2 + 3 * u * u * b - 3 * u * u * u) + 3 * b2) / (6 * b2);
+        weight[3] = 2 * u * u * u / (3 * b2);
+    }
+    weight[1] = 4 * b - weight[0] - weight[2] - weight[3];
+}
+
+/* Section 6, filter, `cardinal` and `bspline`. */
+KERNEL int32_t fixed_cubic(const kernel_fixed *f, const int64_t position[3], const int64_t stride[3])
+{
+    const int32_t more = f->filter == VODR_FILTER_BSPLINE && f->density_bits == 8 ? 3 : 0,
+                  most = (1 << f->density_bits) - 1;
+    const int32_t drop = f->guard_bits + more;
+    int64_t at[3][4], weight[3][4], along_z = 0;
+    for (int c = 0; c < 3; c++) {
+        const int64_t q = position[c] - (1 << (VODR_POSITION_BITS - 1)), first = (q >> VODR_POSITION_BITS) - 1;
+        for (int n = 0; n < 4; n++) {
+            const int64_t i = first + n, last = f->dims_vox[c] - 1;
+            at[c][n] = (i < 0 ? 0 : i > last ? last : i) * stride[c];
+        }
+        fixed_weights(f, (q >> (VODR_POSITION_BITS - f->weight_bits)) & ((1 << f->weight_bits) - 1), weight[c]);
+    }
+    for (int z = 0; z < 4; z++) {
+        int64_t along_y = 0;
+        for (int y = 0; y < 4; y++) {
+            int64_t along_x = 0;
+            for (int x = 0; x < 4; x++)
+                along_x += weight[0][x] * fixed_density(f, at[0][x] + at[1][y] + at[2][z]) * (1 << f->guard_bits);
+            along_y += weight[1][y] * (along_x >> (f->weight_bits + 2));
+        }
+        along_z += weight[2][z] * (along_y >> (f->weight_bits + 2));
+    }
+    const int64_t density = ((along_z >> (f->weight_bits + 2)) + (1 << drop) / 2) >> drop;
+    return (int32_t)(density < 0 ? 0 : density > most ? most : density);
+}
+
 /* Section 6, filter. */
 KERNEL int32_t fixed_sample(const kernel_fixed *f, const int64_t position[3])
 {
     const int64_t stride[3] = {1, f->dims_vox[0], (int64_t)f->dims_vox[0] * f->dims_vox[1]};
+    if (f->filter == VODR_FILTER_CARDINAL || f->filter == VODR_FILTER_BSPLINE)
+        return fixed_cubic(f, position, stride);
     if (f->filter == VODR_FILTER_NEAREST) {
         int64_t index = 0;
         for (int c = 0; c < 3; c++)

@@ -140,6 +140,9 @@ static reference_status check_fixed(const reference *r, const vodr_machine *m, c
         return reference_fail(error, REFERENCE_INVALID, "the machine's voxels are integers, not floats");
     if (r->volume.whole_vox[0])
         return reference_fail(error, REFERENCE_INVALID, "the machine draws a whole volume, not a part of one");
+    if (m->filter == VODR_FILTER_BSPLINE && r->volume.type != REFERENCE_UINT16)
+        return reference_fail(error, REFERENCE_INVALID,
+                              "filter=bspline takes coefficients of 16 bits, not voxels of another width");
     if (r->volume.type == REFERENCE_UINT8 && !map && m->density_bits != 8)
         return reference_fail(error, REFERENCE_INVALID, "density_bits is %d, must be 8 for 8-bit voxels without a map",
                               m->density_bits);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cosim.h"
+#include "layout.h"
 #include "signals.h"
 
 /* A parameter's least and largest value for a block; a condition on another says when it counts. */
@@ -41,6 +42,10 @@ rtl_status cosim_check(vodr_block block, const vodr_machine *machine, vodr_error
         return rtl_fail(error, RTL_INVALID,
                         "pipelines=%" PRId32 ": blocks in Verilog take 1 only; the model in C takes it",
                         machine->pipelines);
+    if (block == VODR_BLOCK_TEXTURE_UNIT && filter_is_cubic(machine))
+        return rtl_fail(error, RTL_INVALID,
+                        "filter=%s: texture_unit in Verilog takes nearest and linear only; the model in C takes it",
+                        machine->filter == VODR_FILTER_CARDINAL ? "cardinal" : "bspline");
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
         const bound *b = &bounds[i];
         int32_t value;

@@ -182,8 +182,6 @@ expect "machine list has paper-32" '^paper-32 ' ../out
         --accel bezier
     bad 2 "--accel hull does not go with filter=linear" "$vodr" reference $raw -o no.png --accel hull
     bad 2 "--filter 'cubic': must be nearest, linear, cardinal or bspline" "$vodr" reference $raw -o no.png --filter cubic
-    bad 2 "--filter cardinal does not go with --numbers fixed" "$vodr" reference $raw -o no.png --filter cardinal \
-        --numbers fixed
     bad 2 "--filter bspline does not go with --numbers texture" "$vodr" reference $raw -o no.png --filter bspline \
         --numbers texture
     for how in block 'bisect --blend mip' 'seed --blend mip'; do
@@ -191,6 +189,19 @@ expect "machine list has paper-32" '^paper-32 ' ../out
             --accel $how
     done
     for filter in cardinal bspline; do
+        good "the machine, --filter $filter" "$vodr" render $raw --filter $filter --view 20,10 --cycles --stats m.json --raw m.rgba
+        expect "cycles: texture_fetch" '"texture_fetch": [1-9]' m.json
+        for how in '--traversal whole' '--set density_bits=8 --set brick=3 --path blocks'; do
+            good "the machine, --filter $filter $how" "$vodr" render $raw --filter $filter --view 20,10 $how --raw n.rgba
+            same "draws the same bytes" m.rgba n.rgba
+        done
+        good "reference --numbers fixed --filter $filter" "$vodr" reference $raw --numbers fixed --filter $filter --view 20,10 --raw n.rgba
+        same "draws the same bytes" m.rgba n.rgba
+        good "reference --set filter=$filter" "$vodr" reference $raw --numbers fixed --set filter=$filter --view 20,10 --raw n.rgba
+        same "draws the same bytes" m.rgba n.rgba
+        bad 2 "filter=$filter: texture_unit in Verilog takes nearest and linear only" "$vodr" render $raw -o no.png --filter $filter --rtl all
+        bad 2 "a brick of 8 voxels (brick_min) needs" "$vodr" render $raw -o no.png --filter $filter --set texture_memory_bytes=1024
+        bad 2 "draw whole volumes" "$vodr" cluster $raw -o no.png --set filter=$filter
         for blend in over mip; do
             good "reference --filter $filter --blend $blend" "$vodr" reference $raw --filter $filter --blend $blend \
                 --accel none --view 30,20 --raw r.rgba --stats r.json

@@ -14,7 +14,7 @@ static bool add_case(uint64_t seed, uint64_t *hash)
 {
     test_case c;
     outcome o = {0};
-    bool made = case_make(seed, &c);
+    bool made = case_make(seed, &c) && case_widen(&c);
     for (int32_t traversal = 0; made && traversal <= VODR_TRAVERSAL_TILE; traversal++) {
         vodr_machine machine = c.machine;
         machine.traversal = traversal;

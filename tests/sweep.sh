@@ -75,6 +75,21 @@ over='--over line_px=16x1,4x4 --over cache_bytes=512,1024,4096 --over view=orbit
     want=$(sed -n '/"cycles": {/,$s/^ *"total": \([0-9]*\).*/\1/p' four.json | head -n 1)
     equal "cycles are render's" "$(column cycles several.csv | tail -n 1)" "$want"
 }
+# ---- filters ----
+# shellcheck disable=SC2086
+{
+    good "every filter" "$vodr" sweep $raw --view 20,10 --over filter=nearest,linear,cardinal,bspline --over density_bits=8,12 \
+        --cycles -o filters.csv
+    for filter in cardinal bspline; do
+        good "one by render" "$vodr" render $raw --view 20,10 --filter $filter --set density_bits=12 --cycles --stats one.json
+        at=$([ $filter = cardinal ] && echo 6 || echo 8)
+        equal "the frame is render's" "$(column frame_sha256 filters.csv | sed -n ${at}p)" \
+            "$(sed -n 's/^ *"frame_sha256": "\([^"]*\)".*/\1/p' one.json)"
+        equal "cycles are render's" "$(column cycles filters.csv | sed -n ${at}p)" \
+            "$(sed -n '/"cycles": {/,$s/^ *"total": \([0-9]*\).*/\1/p' one.json | head -n 1)"
+    done
+    verdict "a cubic filter takes more cycles" "$(column cycles filters.csv | awk 'NR == 3 { linear = $1 } NR > 4 && $1 < 4 * linear { print }')"
+}
 head -c 512 v.raw >x.raw
 printf 'volume   view   slices  # not a comment here\n' >bad.list
 printf '# points\nview line_px tf\n0,0 16x1 ramp\n\n30,-20.5\t4x4   bone\n' >points.list

@@ -14,9 +14,9 @@
 
 static const char *const block_names[VODR_BLOCK_COUNT] = {
     "volume_divider", "slice_generator", "rasterizer", "texture_unit", "alpha_blender", "pixel_cache", "frame_buffer"};
-static const char *const stall_names[VODR_STALL_COUNT] = {"divider",  "slice",       "texture_load", "fragment_fifo",
-                                                          "cache",    "hazard",      "write_back",   "fill",
-                                                          "dram_row", "dram_refresh"};
+static const char *const stall_names[VODR_STALL_COUNT] = {"divider",  "slice",        "texture_load", "fragment_fifo",
+                                                          "cache",    "hazard",       "write_back",   "fill",
+                                                          "dram_row", "dram_refresh", "texture_fetch"};
 
 /* Whether a figure is the same; else it is told. */
 static bool same(FILE *file, const char *of, const char *what, uint64_t clocked, uint64_t other)
@@ -49,7 +49,7 @@ static bool add_up(FILE *file, const vodr_machine *m, const vodr_cycles *c)
     const uint64_t stalled[VODR_BLOCK_COUNT] = {
         s[VODR_STALL_DIVIDER],
         s[VODR_STALL_SLICE],
-        door,
+        door + s[VODR_STALL_TEXTURE_FETCH],
         door,
         s[VODR_STALL_CACHE] + (m->nonblocking ? 0 : hazards),
         s[VODR_STALL_WRITE_BACK] + s[VODR_STALL_FILL] + (m->nonblocking ? hazards : 0),

@@ -12,14 +12,17 @@ enum { MOST_VOXELS = 12 * 12 * 12, MOST_ENTRIES = 4096, ONE = 1 << 24 };
 typedef struct subject {
     uint8_t bytes[MOST_VOXELS];
     uint16_t words[MOST_VOXELS], density[MOST_VOXELS], map[256];
+    bool coefficients; /* words are, in two's complement; else densities */
     vodr_volume volume;
     vodr_rgba entries[MOST_ENTRIES];
     vodr_table table;
 } subject;
 
-static void fill_subject(subject *s, rng *c, int32_t density_bits)
+static void fill_subject(subject *s, rng *c, int32_t density_bits, bool coefficients)
 {
     int32_t most = (1 << density_bits) - 1, kind = (int32_t)rng_int(c, density_bits == 8 ? 0 : 1, 2);
+    kind = coefficients ? 2 : kind;
+    s->coefficients = coefficients;
     s->volume =
         (vodr_volume){.dims_vox = {(int32_t)rng_int(c, 1, 12), (int32_t)rng_int(c, 1, 12), (int32_t)rng_int(c, 1, 12)},
                       .voxel_bytes = kind == 2 ? 2 : 1,
@@ -29,7 +32,7 @@ static void fill_subject(subject *s, rng *c, int32_t density_bits)
         s->map[i] = (uint16_t)rng_int(c, 0, most);
     for (int i = 0; i < MOST_VOXELS; i++) {
         s->bytes[i] = (uint8_t)(rng_one_in(c, 4) ? 255 * rng_one_in(c, 2) : rng_next(c));
-        s->words[i] = (uint16_t)(rng_one_in(c, 4) ? (int64_t)rng_next(c) : rng_int(c, 0, most));
+        s->words[i] = (uint16_t)(rng_one_in(c, coefficients ? 1 : 4) ? (int64_t)rng_next(c) : rng_int(c, 0, most));
         uint16_t word = s->words[i] > most ? (uint16_t)most : s->words[i];
         s->density[i] = kind == 0 ? s->bytes[i] : kind == 1 ? s->map[s->bytes[i]] : word;
     }
@@ -47,11 +50,51 @@ static int64_t voxel(const subject *s, int64_t x, int64_t y, int64_t z)
     int64_t i[3] = {x, y, z};
     for (int c = 0; c < 3; c++)
         i[c] = i[c] < 0 ? 0 : i[c] >= s->volume.dims_vox[c] ? s->volume.dims_vox[c] - 1 : i[c];
-    return s->density[(i[2] * s->volume.dims_vox[1] + i[1]) * s->volume.dims_vox[0] + i[0]];
+    int64_t at = (i[2] * s->volume.dims_vox[1] + i[1]) * s->volume.dims_vox[0] + i[0];
+    return s->coefficients ? (int16_t)s->words[at] : s->density[at];
+}
+
+/* Weights as the page's real functions of t = u/B, rounded as it says: in whole parts of 1/(6*B^3). */
+static void plain_weights(const vodr_machine *m, int64_t u, int64_t w[4])
+{
+    int64_t B = (int64_t)1 << m->weight_bits, v = B - u, whole = 6 * B * B * B;
+    bool spline = m->filter == VODR_FILTER_BSPLINE;
+    int64_t outer = spline ? v * v * v : 3 * u * v * v, other = spline ? u * u * u : 3 * u * u * v;
+    int64_t inner =
+        spline ? B * B * B + 3 * u * B * B + 3 * u * u * B - 3 * u * u * u : 3 * u * (B * B + 4 * u * B - 3 * u * u);
+    w[0] = (spline ? 1 : -1) * (outer * 4 * B / whole);
+    w[2] = (2 * inner * 4 * B + whole) / (2 * whole);
+    w[3] = (spline ? 1 : -1) * (other * 4 * B / whole);
+    w[1] = 4 * B - w[0] - w[2] - w[3];
+}
+
+static int64_t plain_cubic(const subject *s, const vodr_machine *m, const int64_t p[3])
+{
+    int64_t value[64], weight[3][4], first[3], unit = (int64_t)1 << m->weight_bits, guard = (int64_t)1 << m->guard_bits;
+    int64_t most = (1 << m->density_bits) - 1;
+    for (int c = 0; c < 3; c++) {
+        int64_t q = p[c] - ONE / 2;
+        first[c] = floor_div(q, ONE);
+        plain_weights(m, (q - first[c] * ONE) / (ONE / unit), weight[c]);
+    }
+    for (int i = 0; i < 64; i++)
+        value[i] = guard * voxel(s, first[0] - 1 + i % 4, first[1] - 1 + i / 4 % 4, first[2] - 1 + i / 16);
+    for (int c = 0, n = 16; c < 3; c++, n /= 4)
+        for (int i = 0; i < n; i++) {
+            int64_t sum = 0;
+            for (int tap = 0; tap < 4; tap++)
+                sum += weight[c][tap] * value[4 * i + tap];
+            value[i] = floor_div(sum, 4 * unit);
+        }
+    guard *= m->filter == VODR_FILTER_BSPLINE && m->density_bits == 8 ? 8 : 1;
+    int64_t density = floor_div(value[0] + guard / 2, guard);
+    return density < 0 ? 0 : density > most ? most : density;
 }
 
 static int64_t plain_filter(const subject *s, const vodr_machine *m, const int64_t p[3])
 {
+    if (m->filter == VODR_FILTER_CARDINAL || m->filter == VODR_FILTER_BSPLINE)
+        return plain_cubic(s, m, p);
     if (m->filter == VODR_FILTER_NEAREST)
         return voxel(s, floor_div(p[0], ONE), floor_div(p[1], ONE), floor_div(p[2], ONE));
     int64_t value[8], unit = (int64_t)1 << m->weight_bits, guard = (int64_t)1 << m->guard_bits, first[3], weight[3];
@@ -71,7 +114,7 @@ static int64_t plain_filter(const subject *s, const vodr_machine *m, const int64
 static vodr_machine random_machine(rng *c)
 {
     vodr_machine m = vodr_machine_default();
-    m.filter = rng_one_in(c, 3) ? VODR_FILTER_NEAREST : VODR_FILTER_LINEAR;
+    m.filter = (int32_t)rng_int(c, VODR_FILTER_NEAREST, VODR_FILTER_BSPLINE);
     m.density_bits = rng_one_in(c, 2) ? 12 : 8;
     m.weight_bits = (int32_t)rng_int(c, 1, 12);
     m.guard_bits = (int32_t)rng_int(c, 0, 6);
@@ -108,7 +151,8 @@ static void check_filter(const subject *s, const vodr_machine *m, texture_unit *
         slice.plane.origin[i] = 1000 - run.x0 * slice.plane.step_u[i];
     }
     texture_unit_filter(t, &slice, &run, got);
-    uint64_t each = (m->filter == VODR_FILTER_LINEAR ? 8 : 1) * (m->density_bits == 12 ? 2 : 1);
+    static const uint64_t fetches[] = {1, 8, 64, 64}; /* nearest, linear, cardinal, bspline */
+    uint64_t each = fetches[m->filter] * (m->density_bits == 12 || s->coefficients ? 2 : 1);
     assert_int_equal(texture_unit_fetched(t, 3), m->traversal == VODR_TRAVERSAL_WHOLE ? 3 * each : 0);
     for (int n = 0; n < 3; n++) {
         int64_t p[3];
@@ -129,7 +173,7 @@ static void the_filter_is_the_formula(void **state)
     subject s;
     for (int round = 0; round < 3000; round++) {
         vodr_machine m = random_machine(&c);
-        fill_subject(&s, &c, m.density_bits);
+        fill_subject(&s, &c, m.density_bits, m.filter == VODR_FILTER_BSPLINE);
         vodr_view view = {0};
         texture_unit t;
         assert_int_equal(texture_unit_start(&t, &m, &s.volume, &s.table, &view, NULL), VODR_OK);
@@ -150,13 +194,73 @@ static void the_filter_is_the_formula(void **state)
     }
 }
 
+/* Of every width and share: weights add up to one; a B-spline's are not negative, a cardinal spline's outer ones take
+ * at most an eighth. So a constant stays what it is, and nothing leaves the bounds that filter_range() tells. */
+static void cubic_weights_keep_their_bounds(void **state)
+{
+    (void)state;
+    for (int32_t filter = VODR_FILTER_CARDINAL; filter <= VODR_FILTER_BSPLINE; filter++)
+        for (int32_t bits = 1; bits <= 12; bits++) {
+            vodr_machine m = unit_machine("density_bits=12 guard_bits=3");
+            m.filter = filter;
+            m.weight_bits = bits;
+            cubic c;
+            assert_true(cubic_start(&c, &m));
+            for (int32_t u = 0; u < 1 << bits; u++) {
+                const int16_t *w = c.weights[u].tap;
+                assert_int_equal(w[0] + w[1] + w[2] + w[3], 4 << bits);
+                assert_true(w[1] >= 0 && w[2] >= 0 && w[1] <= 4 << bits && w[2] <= 4 << bits);
+                if (filter == VODR_FILTER_BSPLINE)
+                    assert_true(w[0] >= 0 && w[3] >= 0);
+                else
+                    assert_true(w[0] <= 0 && w[3] <= 0 && -w[0] - w[3] <= (4 << bits) / 8);
+            }
+            cubic_finish(&c);
+        }
+}
+
+/* The least and the greatest that two values can make: bounds hold, and where they can be met they are. */
+static void ranges_bound_the_filter(void **state)
+{
+    (void)state;
+    rng r = {35};
+    for (int round = 0; round < 20000; round++) {
+        vodr_machine m = random_machine(&r);
+        m.filter = rng_one_in(&r, 2) ? VODR_FILTER_CARDINAL : VODR_FILTER_BSPLINE;
+        bool spline = m.filter == VODR_FILTER_BSPLINE;
+        int32_t most = (1 << m.density_bits) - 1;
+        int32_t a = (int32_t)(spline ? rng_int(&r, -32768, 32767) : rng_int(&r, 0, most));
+        int32_t b = (int32_t)(spline ? rng_int(&r, -32768, 32767) : rng_int(&r, 0, most));
+        int32_t min = a < b ? a : b, max = a < b ? b : a, voxels[CUBIC_VOXELS], share[3];
+        cubic c;
+        assert_true(cubic_start(&c, &m));
+        for (int i = 0; i < 3; i++)
+            share[i] =
+                (int32_t)(rng_one_in(&r, 2) ? (1 << m.weight_bits) / 2 : rng_int(&r, 0, (1 << m.weight_bits) - 1));
+        int parity = (int)rng_int(&r, 0, 1);
+        for (int i = 0; i < CUBIC_VOXELS; i++) { /* what makes most of a cardinal spline: by the weights' signs */
+            int outer = (i % 4 % 3 == 0) + (i / 4 % 4 % 3 == 0) + (i / 16 % 3 == 0);
+            voxels[i] = outer % 2 == parity ? max : min;
+        }
+        filter_range(&m, &min, &max);
+        int32_t density = cubic_value(&c, share, voxels);
+        assert_true(min <= density && density <= max);
+        cubic_finish(&c);
+    }
+    vodr_machine m = unit_machine("filter=cardinal density_bits=12 weight_bits=8");
+    int32_t min = 1000, max = 2000;
+    filter_range(&m, &min, &max);
+    assert_int_equal(min, 1000 - 477); /* 0.4766 of the range */
+    assert_int_equal(max, 2000 + 477);
+}
+
 /* Numerators are shifted with one floor, also below zero. */
 static void perspective_floors_each_position(void **state)
 {
     (void)state;
     subject s;
     rng c = {32};
-    fill_subject(&s, &c, 8);
+    fill_subject(&s, &c, 8, false);
     s.volume = (vodr_volume){.dims_vox = {4, 1, 1}, .voxel_bytes = 1, .voxels = "\1\2\3\4"};
     vodr_machine m = unit_machine("filter=nearest traversal=whole");
     vodr_view view = {.perspective = true, .shift = 5, .base = {2 * ONE, 0, 0}};
@@ -270,7 +374,7 @@ static void residency(void **state)
     for (int buffers = 1; buffers <= 2; buffers++) {
         vodr_machine m = unit_machine("density_bits=12");
         m.double_buffer = buffers == 2;
-        fill_subject(&s, &c, 12);
+        fill_subject(&s, &c, 12, false);
         s.volume.dims_vox[0] = 12;
         s.volume.dims_vox[1] = 2;
         s.volume.dims_vox[2] = 3;
@@ -296,9 +400,10 @@ static void residency(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_filter_is_the_formula),    cmocka_unit_test(perspective_floors_each_position),
-        cmocka_unit_test(tables_are_converted_exactly), cmocka_unit_test(wrong_tables_are_refused),
-        cmocka_unit_test(transparency_by_definition),   cmocka_unit_test(residency),
+        cmocka_unit_test(the_filter_is_the_formula),       cmocka_unit_test(perspective_floors_each_position),
+        cmocka_unit_test(tables_are_converted_exactly),    cmocka_unit_test(wrong_tables_are_refused),
+        cmocka_unit_test(transparency_by_definition),      cmocka_unit_test(residency),
+        cmocka_unit_test(cubic_weights_keep_their_bounds), cmocka_unit_test(ranges_bound_the_filter),
     };
     return cmocka_run_group_tests_name("texture_unit", tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "case_parts.h"
+#include "spline.h"
 
 static vodr_machine random_picture(rng *r, bool delicate)
 {
@@ -32,6 +33,37 @@ bool case_make(uint64_t seed, test_case *c)
     }
     case_make_view(c, delicate);
     return true;
+}
+
+/* Coefficients in the place of densities: those of a spline through them, or any there can be. */
+static bool make_coefficients(test_case *c, rng *r)
+{
+    host_error error;
+    const int32_t *dims = c->input.dims_vox;
+    const size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
+    int16_t *coefficients = malloc(count * sizeof *coefficients);
+    bool made =
+        coefficients && spline_coefficients(&c->input, c->machine.density_bits, coefficients, &error) == HOST_OK;
+    const bool any = rng_one_in(r, 3);
+    for (size_t i = 0; made && any && i < count; i++) {
+        coefficients[i] = (int16_t)(rng_one_in(r, 8) ? rng_int(r, 0, 1) * 65535 - 32768 : rng_int(r, -32768, 32767));
+    }
+    free(c->voxels);
+    c->voxels = coefficients;
+    c->input.voxels = coefficients;
+    c->input.voxel_bytes = 2;
+    c->input.map = NULL;
+    return made;
+}
+
+bool case_widen(test_case *c)
+{
+    rng r = {c->seed + 0x5B11E5};
+    if (!rng_one_in(&r, 3)) {
+        return true;
+    }
+    c->machine.filter = rng_one_in(&r, 2) ? VODR_FILTER_CARDINAL : VODR_FILTER_BSPLINE;
+    return c->machine.filter == VODR_FILTER_CARDINAL || make_coefficients(c, &r);
 }
 
 void case_free(test_case *c)
@@ -96,8 +128,11 @@ static int32_t random_edge(rng *r, const int32_t dims_vox[3])
 /* What bricks of `edge` voxels need of the texture memory. */
 static int32_t texture_need_bytes(const vodr_machine *m, const int32_t dims_vox[3], int32_t edge)
 {
-    int32_t border = m->filter == VODR_FILTER_LINEAR ? 1 : 0;
-    int32_t need = (m->density_bits == 8 ? 1 : 2) * (1 + m->double_buffer);
+    static const int32_t borders[] = {
+        [VODR_FILTER_NEAREST] = 0, [VODR_FILTER_LINEAR] = 1, [VODR_FILTER_CARDINAL] = 2, [VODR_FILTER_BSPLINE] = 2};
+    int32_t border = borders[m->filter];
+    bool narrow = m->density_bits == 8 && m->filter != VODR_FILTER_BSPLINE;
+    int32_t need = (narrow ? 1 : 2) * (1 + m->double_buffer);
     for (int i = 0; i < 3; i++) {
         int32_t side = edge + 2 * border;
         need *= side < dims_vox[i] ? side : dims_vox[i];

@@ -28,6 +28,10 @@ typedef struct test_case {
 bool case_make(uint64_t seed, test_case *c);
 void case_free(test_case *c);
 
+/* Gives one case in three a cubic filter instead of its own, with coefficients for voxels where the filter takes them.
+ * Apart from case_make(), whose cases are recorded of a card. False when the host is out of memory. */
+bool case_widen(test_case *c);
+
 /* Draws every organisation parameter but the traversal anew, such that the machine can be built for the case's volume.
  */
 void case_organise(test_case *c, vodr_machine *machine);

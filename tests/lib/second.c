@@ -106,7 +106,7 @@ static void grown_box(const scene *s, int64_t brick, int64_t lo[3], int64_t hi[3
 
 static bool brick_is_transparent(const scene *s, int64_t brick)
 {
-    int64_t lo[3], hi[3], min = INT64_MAX, max = 0;
+    int64_t lo[3], hi[3], min = INT64_MAX, max = INT64_MIN;
     grown_box(s, brick, lo, hi);
     for (int64_t z = lo[2]; z < hi[2]; z++) {
         for (int64_t y = lo[1]; y < hi[1]; y++) {
@@ -117,6 +117,7 @@ static bool brick_is_transparent(const scene *s, int64_t brick)
             }
         }
     }
+    second_filter_bounds(s->machine, &min, &max);
     return second_transparent(s->machine, s->converted, (uint32_t)min, (uint32_t)max);
 }
 
@@ -377,10 +378,11 @@ static vodr_status count_visits(const scene *s)
 
 static void draw_fragment(scene *s, const fragment *f)
 {
+    static const int64_t fetches[] = {1, 8, 64, 64}; /* nearest, linear, cardinal, bspline */
     const vodr_machine *m = s->machine;
     s->counters->fragments++;
     if (m->traversal == VODR_TRAVERSAL_WHOLE) {
-        s->counters->texture_load_bytes += (uint64_t)((m->filter == VODR_FILTER_LINEAR ? 8 : 1) * s->density_bytes);
+        s->counters->texture_load_bytes += (uint64_t)(fetches[m->filter] * s->density_bytes);
     }
     if (m->kill_transparent && second_transparent(m, s->converted, f->density, f->density)) {
         s->counters->killed_fragments++;
@@ -474,6 +476,7 @@ static vodr_status draw(scene *s, vodr_frame *frame)
 vodr_status second_render(const vodr_machine *machine, const vodr_volume *volume, const vodr_table *table,
                           const vodr_view *view, vodr_frame *frame, vodr_counters *counters)
 {
+    static const int64_t borders[] = {0, 1, 2, 2}; /* nearest, linear, cardinal, bspline */
     *frame = (vodr_frame){0};
     *counters = (vodr_counters){0};
     scene s = {.machine = machine,
@@ -481,8 +484,8 @@ vodr_status second_render(const vodr_machine *machine, const vodr_volume *volume
                .table = table,
                .view = view,
                .counters = counters,
-               .border = machine->filter == VODR_FILTER_LINEAR ? 1 : 0,
-               .density_bytes = machine->density_bits == 8 ? 1 : 2,
+               .border = borders[machine->filter],
+               .density_bytes = machine->density_bits == 8 && machine->filter != VODR_FILTER_BSPLINE ? 1 : 2,
                .buffers = 1 + machine->double_buffer};
     choose_edge(&s);
     vodr_status status = VODR_OK;

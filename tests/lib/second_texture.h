@@ -11,11 +11,14 @@ typedef struct second_pixel {
     bool written;
 } second_pixel;
 
-/* The density of voxel (x, y, z), clamped to the volume's edge. */
+/* The density of voxel (x, y, z), with bspline its coefficient; clamped to the volume's edge. */
 int64_t second_density(const vodr_machine *machine, const vodr_volume *volume, int64_t x, int64_t y, int64_t z);
 
 /* The filter's output at a position. */
 uint32_t second_filter(const vodr_machine *machine, const vodr_volume *volume, const int64_t position[3]);
+
+/* Turns the range of a brick's voxels into that of what the filter makes of them, as skip_empty reckons it. */
+void second_filter_bounds(const vodr_machine *machine, int64_t *min, int64_t *max);
 
 /* One channel of the table, converted from tf_bits to fb_bits. */
 uint32_t second_convert(const vodr_machine *machine, uint32_t value);

@@ -33,7 +33,8 @@ uint64_t suite_run(const suite *s, bool (*check)(test_case *c, FILE *file))
     uint64_t failed = quiet ? 0 : 1;
     for (uint64_t i = 0; quiet && i < s->cases; i++) {
         test_case c;
-        bool good = case_make(s->first_seed + i, &c) && check(&c, failed < TOLD_CASES ? stderr : quiet);
+        bool good =
+            case_make(s->first_seed + i, &c) && case_widen(&c) && check(&c, failed < TOLD_CASES ? stderr : quiet);
         failed += !good;
         case_free(&c);
     }
