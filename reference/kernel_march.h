@@ -97,6 +97,7 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
             at = pick(at > last, last, at);
         place_of(rays, at, p[k]);
         shows[k] = s->live;
+        value[k] = spread(0);
         if (looks) {
             shows[k] = shows[k] & place_shows(f, skip, p[k]);
             if (!any_lane(shows[k]))
