@@ -3,7 +3,7 @@
 (* keep *) wire rules =
     replacement != 2'd3 &&                      // there is no such replacement
     (!colour_valid || (!colour_x[14] && !colour_y[14])) &&
-    (!door_valid || (!door_x[14] && !door_y[14])) &&
+    (rst || !door_valid || (!door_x[14] && !door_y[14])) &&
     (rst || !waits || (!front_pixel[14] && !front_pixel[29])) &&
     // Without clear_on_first_touch every miss fills; and what replaces nothing finds nothing dirty.
     (rst || !waits || clear_on_first_touch || front_fills == front_misses) &&
