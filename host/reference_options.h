@@ -8,7 +8,7 @@
 /* A choice being made. */
 typedef struct reference_wish {
     reference_choice choice;
-    const char *machine_filter; /* of --filter; NULL: not given */
+    const char *machine_filter;                                                   /* of --filter; NULL: not given */
     bool has_accel, has_step, has_block, has_shading, has_termination, has_theta; /* given on the command line */
 } reference_wish;
 
