@@ -73,6 +73,14 @@ enum { CLUSTER_TIMED_FRAMES = 8, CLUSTER_TIMED_DIVISIONS = 20 };
 
 enum { CLUSTER_MAX_NODES = 1024, CLUSTER_LEAST_SUBVOLUME_VOX = 4, CLUSTER_MOST_SUBVOLUME_VOX = 64 };
 
+/* What nodes are that draw with the hardware model; filled in before the volume is divided. */
+typedef struct cluster_machine {
+    vodr_machine machine;
+    vodr_view view; /* of the whole volume */
+    vodr_table table;
+    const uint16_t *map; /* of the voxels that the source loads, which are densities then: see vodr_volume */
+} cluster_machine;
+
 typedef struct cluster_options {
     cluster_balance balance;
     cluster_weight weight;
@@ -81,7 +89,9 @@ typedef struct cluster_options {
     int32_t nodes;       /* simulated, drawn one after another by a process alone; 0: the processes are the nodes */
     int32_t pixel_bits;  /* of a channel between nodes: 16, or 32 for floats; maxima are always floats */
     size_t memory_bytes; /* voxels that a node may hold; 0: no limit */
-    double latency_s, bytes_per_s; /* simulated: of a message, and of each node's network */
+    double latency_s, bytes_per_s;  /* simulated: of a message, and of each node's network */
+    const cluster_machine *machine; /* draws in place of the reference renderer; NULL: that does. Over and under only */
+    double latency_cycles, bytes_per_cycle; /* of a network of machines */
     reference_options renderer;
 } cluster_options;
 
@@ -123,10 +133,11 @@ typedef struct cluster_share {
     int32_t parts;       /* leaves of the tree of nodes */
     int32_t clusters;    /* boxes drawn */
     uint64_t held_bytes; /* voxels, borders too */
-    uint64_t samples;
-    double render_s;    /* of the last frame, by the clock */
-    double cpu_s;       /* of all threads; least of the frames since the volume was divided */
-    double composite_s; /* after rendering, waiting included; simulated: by the model */
+    uint64_t samples;    /* of machines: fragments */
+    uint64_t cycles;     /* of machines */
+    double render_s;     /* of the last frame, by the clock */
+    double cpu_s;        /* of all threads; least of the frames since the volume was divided */
+    double composite_s;  /* after rendering, waiting included; simulated: by the model */
     uint64_t sent_bytes;
     double scan_s, divide_s, load_s; /* preprocessing */
 } cluster_share;
@@ -148,6 +159,8 @@ typedef struct cluster_report {
     double barrier_share; /* of that: how long the fastest waits for it */
     double frame_s;       /* rendering and compositing; simulated: by the model */
     cluster_change change;
+    uint64_t slowest_cycles; /* of machines */
+    double network_cycles;   /* that compositing takes after these, by the model */
 } cluster_report;
 
 /* Of the last cluster_draw(); lives until the next call. On node 0. */

@@ -110,6 +110,17 @@ cluster_status composite_give(const composite_step *step, composite_piece *p, no
     return CLUSTER_OK;
 }
 
+double composite_took(const composite_model *model, int32_t members, const node_message *out, const node_message *in)
+{
+    double sent = 0, received = 0, messages = 0;
+    for (int32_t i = 0; i < members; i++) {
+        messages += out[i].count > 0;
+        sent += (double)out[i].count;
+        received += (double)in[i].count;
+    }
+    return messages * model->latency + fmax(sent, received) / model->bytes_per_time;
+}
+
 cluster_status composite_take(const composite_step *step, composite_piece *p, const node_message *in, vodr_error *error)
 {
     int32_t rows[2];

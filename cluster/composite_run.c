@@ -6,6 +6,8 @@
 
 /* Room for the messages of a round. */
 typedef struct mail {
+    const composite_model *model;
+    double took; /* by the model, this node's messages of the round */
     composite_step step;
     int32_t peer[CLUSTER_MAX_NODES];
     node_message out[CLUSTER_MAX_NODES], in[CLUSTER_MAX_NODES];
@@ -37,6 +39,7 @@ static void open_gap(node_message *list, int32_t own, int32_t members)
 static cluster_status run_round(cluster_node *node, mail *m, composite_piece *piece, vodr_error *error)
 {
     const composite_step *s = &m->step;
+    m->took = 0;
     if (s->members == 0)
         return CLUSTER_OK;
     for (int32_t i = 0; i < s->members; i++) {
@@ -50,6 +53,7 @@ static cluster_status run_round(cluster_node *node, mail *m, composite_piece *pi
     open_gap(m->in, s->own, s->members);
     if (status == CLUSTER_OK)
         status = composite_take(s, piece, m->in, error);
+    m->took = composite_took(m->model, s->members, m->out, m->in);
     free_mail(m);
     return status;
 }
@@ -72,25 +76,46 @@ static cluster_status collect(cluster_node *node, mail *m, composite_piece *piec
         status = node_exchange(node, peers, m->peer, m->out, m->in, error);
     for (int32_t i = 0; status == CLUSTER_OK && node->rank == 0 && i < peers; i++)
         status = layers_unpack(&piece->layers, &m->in[i], error);
+    m->took = 0;
+    for (int32_t i = 0; node->rank == 0 && i < peers; i++)
+        m->took += composite_took(m->model, 1, &m->in[i], &m->out[i]);
     free_mail(m);
     return status;
 }
 
-cluster_status composite_run(cluster_node *node, cluster_composite method, composite_piece *piece, vodr_error *error)
+/* Adds what the slowest node's messages of each round take. */
+static cluster_status add_up(cluster_node *node, double *round_took, int32_t rounds, double *took, vodr_error *error)
 {
+    cluster_status status = cluster_reduce(node, round_took, (size_t)rounds, true, error);
+    for (int32_t i = 0; status == CLUSTER_OK && i < rounds; i++)
+        *took += round_took[i];
+    return status;
+}
+
+cluster_status composite_run(cluster_node *node, cluster_composite method, composite_piece *piece,
+                             const composite_model *model, double *took, vodr_error *error)
+{
+    double round_took[COMPOSITE_ROUNDS + 1] = {0};
     mail *m = calloc(1, sizeof *m);
+    *took = 0;
     if (!m) {
         node->broken = true;
         return cluster_no_memory(error);
     }
+    m->model = model;
     cluster_status status = layers_merge(&piece->layers, error);
     const int32_t rounds = composite_rounds(method, node->ranks);
     for (int32_t round = 0; status == CLUSTER_OK && round < rounds; round++) {
         composite_step_of(method, node->ranks, round, node->rank, &m->step);
         status = run_round(node, m, piece, error);
+        round_took[round] = m->took;
     }
-    if (status == CLUSTER_OK && node->ranks > 1)
+    if (status == CLUSTER_OK && node->ranks > 1) {
         status = collect(node, m, piece, error);
+        round_took[rounds] = m->took;
+    }
+    if (status == CLUSTER_OK)
+        status = add_up(node, round_took, rounds + 1, took, error);
     if (status != CLUSTER_OK)
         node->broken = true; /* the others wait for a message that does not come */
     free(m);

@@ -7,57 +7,48 @@
 
 /* A round: mail[from*nodes + to]. */
 typedef struct round_state {
-    int32_t nodes;
+    cluster_composite method;
+    int32_t nodes, round;
     node_message *mail;
-    composite_step step;
+    composite_step step; /* of the node looked at, with its messages: */
+    node_message out[CLUSTER_MAX_NODES], in[CLUSTER_MAX_NODES];
 } round_state;
 
-static cluster_status give_all(round_state *r, cluster_composite method, int32_t round, composite_piece *piece,
-                               vodr_error *error)
+/* The message from one node to another. */
+static node_message *message(const round_state *r, int32_t from, int32_t to)
 {
-    node_message out[CLUSTER_MAX_NODES];
-    cluster_status status = CLUSTER_OK;
-    for (int32_t i = 0; status == CLUSTER_OK && i < r->nodes; i++) {
-        composite_step_of(method, r->nodes, round, i, &r->step);
-        for (int32_t j = 0; j < r->step.members; j++)
-            out[j] = (node_message){0};
-        status = composite_give(&r->step, &piece[i], out, error);
-        for (int32_t j = 0; j < r->step.members; j++)
-            r->mail[(size_t)i * (size_t)r->nodes + (size_t)r->step.member[j]] = out[j];
-    }
-    return status;
+    return &r->mail[(size_t)from * (size_t)r->nodes + (size_t)to];
 }
 
-static cluster_status take_all(round_state *r, cluster_composite method, int32_t round, composite_piece *piece,
-                               vodr_error *error)
+/* Finds who is in a node's group in this round, and what they have for it and it for them. */
+static void find_group(round_state *r, int32_t node)
 {
-    node_message in[CLUSTER_MAX_NODES];
-    cluster_status status = CLUSTER_OK;
-    for (int32_t i = 0; status == CLUSTER_OK && i < r->nodes; i++) {
-        composite_step_of(method, r->nodes, round, i, &r->step);
-        for (int32_t j = 0; j < r->step.members; j++)
-            in[j] = r->mail[(size_t)r->step.member[j] * (size_t)r->nodes + (size_t)i];
-        status = composite_take(&r->step, &piece[i], in, error);
+    composite_step_of(r->method, r->nodes, r->round, node, &r->step);
+    for (int32_t i = 0; i < r->step.members; i++) {
+        r->out[i] = *message(r, node, r->step.member[i]);
+        r->in[i] = *message(r, r->step.member[i], node);
     }
-    return status;
 }
 
-/* What the messages of a round take: each node sends and receives at once. */
-static double round_seconds(const round_state *r, const composite_model *model)
+/* A round: all give, then all take. */
+static cluster_status run_round(round_state *r, composite_piece *piece, const composite_model *model, double *took,
+                                vodr_error *error)
 {
     double most = 0;
-    for (int32_t i = 0; i < r->nodes; i++) {
-        double bytes[2] = {0, 0}, messages = 0;
-        for (int32_t j = 0; j < r->nodes; j++) {
-            const node_message *out = &r->mail[(size_t)i * (size_t)r->nodes + (size_t)j];
-            const node_message *in = &r->mail[(size_t)j * (size_t)r->nodes + (size_t)i];
-            messages += out->bytes != NULL;
-            bytes[0] += (double)out->count;
-            bytes[1] += (double)in->count;
-        }
-        most = fmax(most, messages * model->latency_s + fmax(bytes[0], bytes[1]) / model->bytes_per_s);
+    cluster_status status = CLUSTER_OK;
+    for (int32_t i = 0; status == CLUSTER_OK && i < r->nodes; i++) {
+        find_group(r, i);
+        status = composite_give(&r->step, &piece[i], r->out, error);
+        for (int32_t j = 0; j < r->step.members; j++)
+            *message(r, i, r->step.member[j]) = r->out[j];
     }
-    return most;
+    for (int32_t i = 0; status == CLUSTER_OK && i < r->nodes; i++) {
+        find_group(r, i);
+        most = fmax(most, composite_took(model, r->step.members, r->out, r->in));
+        status = composite_take(&r->step, &piece[i], r->in, error);
+    }
+    *took += most;
+    return status;
 }
 
 static void free_mail(round_state *r)
@@ -66,7 +57,7 @@ static void free_mail(round_state *r)
         node_message_free(&r->mail[i]);
 }
 
-static cluster_status collect(int32_t nodes, composite_piece *piece, const composite_model *model, double *seconds,
+static cluster_status collect(int32_t nodes, composite_piece *piece, const composite_model *model, double *took,
                               vodr_error *error)
 {
     for (int32_t i = 1; i < nodes; i++) {
@@ -77,7 +68,7 @@ static cluster_status collect(int32_t nodes, composite_piece *piece, const compo
         if (status == CLUSTER_OK)
             status = layers_unpack(&piece[0].layers, &m, error);
         piece[i].sent_bytes += m.count;
-        *seconds += (m.count > 0 ? model->latency_s : 0) + (double)m.count / model->bytes_per_s;
+        *took += composite_took(model, 1, &m, &(node_message){0});
         node_message_free(&m);
         if (status != CLUSTER_OK)
             return status;
@@ -86,13 +77,14 @@ static cluster_status collect(int32_t nodes, composite_piece *piece, const compo
 }
 
 cluster_status composite_simulate(cluster_composite method, int32_t nodes, composite_piece *piece,
-                                  const composite_model *model, double *seconds, vodr_error *error)
+                                  const composite_model *model, double *took, vodr_error *error)
 {
     round_state *r = calloc(1, sizeof *r);
     cluster_status status = CLUSTER_OK;
-    *seconds = 0;
+    *took = 0;
     if (r)
-        *r = (round_state){.nodes = nodes, .mail = calloc((size_t)nodes * (size_t)nodes, sizeof *r->mail)};
+        *r = (round_state){
+            .method = method, .nodes = nodes, .mail = calloc((size_t)nodes * (size_t)nodes, sizeof *r->mail)};
     if (!r || !r->mail) {
         free(r);
         return cluster_no_memory(error);
@@ -100,15 +92,12 @@ cluster_status composite_simulate(cluster_composite method, int32_t nodes, compo
     for (int32_t i = 0; status == CLUSTER_OK && i < nodes; i++)
         status = layers_merge(&piece[i].layers, error);
     const int32_t rounds = composite_rounds(method, nodes);
-    for (int32_t round = 0; status == CLUSTER_OK && round < rounds; round++) {
-        status = give_all(r, method, round, piece, error);
-        if (status == CLUSTER_OK)
-            status = take_all(r, method, round, piece, error);
-        *seconds += round_seconds(r, model);
+    for (; status == CLUSTER_OK && r->round < rounds; r->round++) {
+        status = run_round(r, piece, model, took, error);
         free_mail(r);
     }
     if (status == CLUSTER_OK)
-        status = collect(nodes, piece, model, seconds, error);
+        status = collect(nodes, piece, model, took, error);
     free(r->mail);
     free(r);
     return status;

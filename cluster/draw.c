@@ -75,27 +75,39 @@ static double least_of(double so_far_s, double seconds)
     return so_far_s > 0 && so_far_s < seconds ? so_far_s : seconds;
 }
 
-static cluster_status draw_leaf(frame *f, int32_t i, layers *l, cluster_share *share, vodr_error *error)
+/* The area of a box by the reference renderer. */
+static cluster_status march(const frame *f, const brick *b, rectangle area, bool stored, cluster_share *share,
+                            vodr_error *error)
 {
-    brick *b = &f->cluster->bricks.brick[f->leaf[i]];
     reference_march_job job = *f->job;
     reference_stats stats;
-    const rectangle area = leaf_area(f, i);
-    const double begin_s = cluster_cpu_s();
-    if (rectangle_is_empty(area))
-        return CLUSTER_OK;
     job.camera.first_px[0] = area.x0;
     job.camera.first_px[1] = area.y0;
     job.camera.width_px = area.x1 - area.x0;
     job.camera.height_px = area.y1 - area.y0;
     memcpy(job.lo_vox, b->lo_vox, sizeof job.lo_vox);
     memcpy(job.hi_vox, b->hi_vox, sizeof job.hi_vox);
-    job.stored = l->mip;
+    job.stored = stored;
     reference_status status = reference_march(b->renderer, &job, f->rgba, &stats, error);
     if (status != REFERENCE_OK)
         return status == REFERENCE_INVALID ? CLUSTER_INVALID : CLUSTER_ENVIRONMENT;
-    layers_march(l, l->count - 1, area, f->rgba);
     share->samples += stats.samples;
+    return CLUSTER_OK;
+}
+
+static cluster_status draw_leaf(frame *f, int32_t i, layers *l, cluster_share *share, vodr_error *error)
+{
+    const cluster_options *o = &f->cluster->options;
+    brick *b = &f->cluster->bricks.brick[f->leaf[i]];
+    const rectangle area = leaf_area(f, i);
+    const double begin_s = cluster_cpu_s();
+    if (rectangle_is_empty(area))
+        return CLUSTER_OK;
+    cluster_status status =
+        o->machine ? draw_by_machine(o, b, area, f->rgba, share, error) : march(f, b, area, l->mip, share, error);
+    if (status != CLUSTER_OK)
+        return status;
+    layers_march(l, l->count - 1, area, f->rgba);
     b->cpu_s = least_of(b->cpu_s, cluster_cpu_s() - begin_s);
     return CLUSTER_OK;
 }
@@ -107,7 +119,7 @@ static cluster_status draw_node(frame *f, int32_t owner, layers *l, vodr_error *
     cluster_share *share = &c->share[owner];
     const double begin_s = cluster_now_s(), begin_cpu_s = cluster_cpu_s();
     cluster_status status = CLUSTER_OK;
-    share->samples = 0;
+    share->samples = share->cycles = 0;
     for (int32_t i = 0, end; status == CLUSTER_OK && i < f->count; i = end) {
         rectangle area = {0, 0, 0, 0};
         for (end = i; end < f->count && f->place[end] == f->place[i]; end++)
@@ -139,12 +151,15 @@ static cluster_status draw_nodes(frame *f, vodr_error *error)
 static cluster_status composite(frame *f, double *composite_s, vodr_error *error)
 {
     cluster *c = f->cluster;
+    const cluster_options *o = &c->options;
     const double begin_s = cluster_now_s();
-    const composite_model model = {c->options.latency_s, c->options.bytes_per_s};
-    if (c->options.nodes > 0)
-        return composite_simulate(c->options.composite, c->nodes, f->piece, &model, composite_s, error);
-    cluster_status status = composite_run(c->node, c->options.composite, &f->piece[0], error);
-    *composite_s = cluster_now_s() - begin_s;
+    const composite_model seconds = {o->latency_s, o->bytes_per_s}, cycles = {o->latency_cycles, o->bytes_per_cycle};
+    const composite_model *model = o->machine ? &cycles : &seconds;
+    double took = 0;
+    cluster_status status = o->nodes > 0 ? composite_simulate(o->composite, c->nodes, f->piece, model, &took, error)
+                                         : composite_run(c->node, o->composite, &f->piece[0], model, &took, error);
+    *composite_s = o->nodes > 0 && !o->machine ? took : cluster_now_s() - begin_s;
+    c->report.network_cycles = o->machine ? took : 0;
     return status;
 }
 
@@ -152,6 +167,7 @@ static void report(frame *f, double composite_s)
 {
     cluster *c = f->cluster;
     double fastest = INFINITY, slowest = 0, least = INFINITY, most = 0;
+    c->report.slowest_cycles = 0;
     for (int32_t i = 0; i < c->nodes; i++) {
         const cluster_share *s = &c->share[i];
         const double took_s = c->options.nodes > 0 ? s->cpu_s : s->render_s; /* others run beside a simulation */
@@ -159,6 +175,8 @@ static void report(frame *f, double composite_s)
         slowest = fmax(slowest, took_s);
         least = fmin(least, s->cpu_s);
         most = fmax(most, s->cpu_s);
+        if (s->cycles > c->report.slowest_cycles)
+            c->report.slowest_cycles = s->cycles;
     }
     c->report.slowest_s = slowest;
     c->report.barrier_share = slowest > 0 ? (slowest - fastest) / slowest : 0;

@@ -95,4 +95,9 @@ cluster_status exchange_bricks(cluster *c, const bricks *old, vodr_error *error)
 cluster_status bricks_load(cluster *c, bricks *old, int32_t border_vox, vodr_error *error);
 void bricks_free(const cluster_source *source, bricks *b);
 
+/* Draws a box by the hardware model, as it is of the whole volume: the area's pixels into rgba, as reference_march()
+ * does. Adds fragments and cycles. */
+cluster_status draw_by_machine(const cluster_options *o, const brick *b, rectangle area, double *rgba,
+                               cluster_share *share, vodr_error *error);
+
 #endif

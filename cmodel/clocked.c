@@ -13,6 +13,7 @@
 #include "pixel_word.h"
 #include "texture_unit.h"
 #include "volume_divider.h"
+#include "voxels.h"
 
 enum { PROGRESS_CYCLES = 1 << 16 };
 
@@ -190,10 +191,11 @@ static vodr_status start(clocked *c, const vodr_volume *volume, const vodr_table
     const vodr_machine *m = c->machine;
     int32_t edge = volume_divider_edge(m, c->view);
     block_setup setup = {.machine = m, .view = c->view, .volume = volume, .tables = &c->tables, .storage = &c->storage};
+    const vox_box drawn = voxels_drawn(volume);
     size_t bricks = 1;
     for (int i = 0; i < 3; i++) {
         setup.edge_vox[i] = edge ? edge : volume->dims_vox[i];
-        bricks *= (size_t)ceil_div32(volume->dims_vox[i], setup.edge_vox[i]);
+        bricks *= (size_t)ceil_div32(drawn.hi[i] - drawn.lo[i], setup.edge_vox[i]);
     }
     vodr_status status = texture_unit_start(&c->tables, m, volume, table, c->view, error);
     if (status == VODR_OK && edge)

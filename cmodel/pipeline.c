@@ -8,6 +8,7 @@
 #include "layout.h"
 #include "rasterizer.h"
 #include "slice_generator.h"
+#include "voxels.h"
 
 /* What one visit covers. */
 typedef struct footprint {
@@ -297,6 +298,11 @@ static vodr_status check_volume(const vodr_volume *v, const vodr_machine *m, vod
         if (v->dims_vox[c] < 1 || v->dims_vox[c] > VODR_MAX_DIM_VOX)
             return vodr_fail(error, VODR_INVALID, "the volume is %dx%dx%d voxels but must have 1 to %d a side",
                              v->dims_vox[0], v->dims_vox[1], v->dims_vox[2], VODR_MAX_DIM_VOX);
+    const vox_box drawn = voxels_drawn(v);
+    for (int c = 0; c < 3; c++)
+        if (drawn.lo[c] < 0 || drawn.hi[c] <= drawn.lo[c] || drawn.hi[c] > v->dims_vox[c])
+            return vodr_fail(error, VODR_INVALID, "%d to %d is to be drawn along %c but must lie within 0 to %d",
+                             drawn.lo[c], drawn.hi[c], "xyz"[c], v -> dims_vox[c]);
     if (v->voxel_bytes != 1 && v->voxel_bytes != 2)
         return vodr_fail(error, VODR_INVALID, "voxel_bytes is %d but must be 1 or 2", v->voxel_bytes);
     if (m->filter == VODR_FILTER_BSPLINE && v->voxel_bytes != 2)

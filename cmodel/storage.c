@@ -21,11 +21,12 @@ bool storage_start(storage *s, const vodr_machine *machine, const vodr_view *vie
 /* The voxels that lie in memory for a brick. */
 static vox_box region_of(const storage *s, int64_t brick)
 {
+    const vox_box drawn = voxels_drawn(s->volume);
     vox_box box;
     for (int c = 0; c < 3; c++) {
-        const int32_t size = s->volume->dims_vox[c], edge = s->edge_vox[c], count = ceil_div32(size, edge);
-        box.lo[c] = (int32_t)(brick % count) * edge;
-        box.hi[c] = edge < size - box.lo[c] ? box.lo[c] + edge : size;
+        const int32_t edge = s->edge_vox[c], count = ceil_div32(drawn.hi[c] - drawn.lo[c], edge);
+        box.lo[c] = drawn.lo[c] + (int32_t)(brick % count) * edge;
+        box.hi[c] = edge < drawn.hi[c] - box.lo[c] ? box.lo[c] + edge : drawn.hi[c];
         brick /= count;
     }
     return voxels_reach(s->volume->dims_vox, &box, filter_border_vox(s->machine));

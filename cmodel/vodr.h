@@ -71,12 +71,16 @@ vodr_status vodr_machine_check(const vodr_machine *machine, vodr_error *error);
  * voxel_bytes 2: density is the voxel, in native byte order, clamped to 2^density_bits - 1; map is not used.
  * filter=bspline takes coefficients instead, voxel_bytes 2: int16_t, with 3 fraction bits where density_bits is 8, none
  * where it is 12 (docs/architecture.md, section 11, says how the application makes them); map is not used.
- * Entries of map are below 2^density_bits. Nothing is copied: a voxel is converted as it enters texture memory. */
+ * Entries of map are below 2^density_bits. Nothing is copied: a voxel is converted as it enters texture memory.
+ *
+ * Only samples in [lo, hi) are drawn, cut into bricks from lo on; both 0, 0, 0: all. What lies around is there to be
+ * filtered, so that a node of a cluster draws its part of a larger volume as that is drawn. */
 typedef struct vodr_volume {
     int32_t dims_vox[3];
     int32_t voxel_bytes;
     const void *voxels;
     const uint16_t *map;
+    int32_t lo_vox[3], hi_vox[3];
 } vodr_volume;
 
 /* ---- the transfer-function table ---- */

@@ -75,12 +75,13 @@ static void choose_nest(volume_divider *d, bool column)
 
 int32_t volume_divider_eye(const volume_divider *d, int c)
 {
-    int64_t last_vox = d->dims_vox[c] - 1, eye_vox = d->view->step_s[c] >= 0 ? last_vox : 0;
+    int64_t first_vox = d->drawn.lo[c], last_vox = d->drawn.hi[c] - 1;
+    int64_t eye_vox = d->view->step_s[c] >= 0 ? last_vox : first_vox;
     if (d->view->perspective)
         eye_vox = d->view->base[c] >> VODR_POSITION_BITS;
-    if (eye_vox < 0)
+    if (eye_vox < first_vox)
         return 0;
-    return (int32_t)((eye_vox < last_vox ? eye_vox : last_vox) / d->edge_vox[c]);
+    return (int32_t)(((eye_vox < last_vox ? eye_vox : last_vox) - first_vox) / d->edge_vox[c]);
 }
 
 /* Up to the eye's brick from below, then down to it from above. */
@@ -97,9 +98,9 @@ static vox_box brick_box(const volume_divider *d, const int32_t first[3], const 
 {
     vox_box box;
     for (int c = 0; c < 3; c++) {
-        int64_t hi = ((int64_t)last[c] + 1) * d->edge_vox[c];
-        box.lo[c] = first[c] * d->edge_vox[c];
-        box.hi[c] = (int32_t)(hi < d->dims_vox[c] ? hi : d->dims_vox[c]);
+        int64_t hi = d->drawn.lo[c] + ((int64_t)last[c] + 1) * d->edge_vox[c];
+        box.lo[c] = d->drawn.lo[c] + first[c] * d->edge_vox[c];
+        box.hi[c] = (int32_t)(hi < d->drawn.hi[c] ? hi : d->drawn.hi[c]);
     }
     return box;
 }
@@ -133,14 +134,14 @@ vodr_status volume_divider_start(volume_divider *d, const vodr_machine *m, const
 {
     *d = (volume_divider){.view = view,
                           .projection = projection_of(view, volume->dims_vox),
+                          .drawn = voxels_drawn(volume),
                           .window = *window,
                           .tile_step = 1,
                           .setup_cycles = m->brick_setup_cycles};
     size_t total = 1;
     for (int c = 0; c < 3; c++) {
-        d->dims_vox[c] = volume->dims_vox[c];
         d->edge_vox[c] = edge_vox[c];
-        d->bricks[c] = ceil_div32(d->dims_vox[c], edge_vox[c]);
+        d->bricks[c] = ceil_div32(d->drawn.hi[c] - d->drawn.lo[c], edge_vox[c]);
         total *= (size_t)d->bricks[c];
     }
     d->tile_px = m->traversal == VODR_TRAVERSAL_TILE ? tile_px(m) : 0;

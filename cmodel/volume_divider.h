@@ -20,7 +20,7 @@ typedef struct candidate {
 typedef struct volume_divider {
     const vodr_view *view;
     projection projection;
-    int32_t dims_vox[3];
+    vox_box drawn;       /* what the bricks make up */
     int32_t edge_vox[3]; /* of a brick */
     int32_t bricks[3];   /* along each axis */
     int32_t nest[3];     /* axes of the three loops, outermost first */

@@ -1,5 +1,16 @@
 #include "voxels.h"
 
+vox_box voxels_drawn(const vodr_volume *volume)
+{
+    const bool all = volume->hi_vox[0] == 0;
+    vox_box drawn;
+    for (int c = 0; c < 3; c++) {
+        drawn.lo[c] = all ? 0 : volume->lo_vox[c];
+        drawn.hi[c] = all ? volume->dims_vox[c] : volume->hi_vox[c];
+    }
+    return drawn;
+}
+
 vox_box voxels_reach(const int32_t dims_vox[3], const vox_box *box, int32_t border)
 {
     vox_box reach;

@@ -6,6 +6,9 @@
 #include "view.h"
 #include "vodr.h"
 
+/* What of a volume is drawn. */
+vox_box voxels_drawn(const vodr_volume *volume);
+
 /* The voxels that samples inside `box` can touch: the box grown by `border` and clipped to the volume. */
 vox_box voxels_reach(const int32_t dims_vox[3], const vox_box *box, int32_t border);
 

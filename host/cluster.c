@@ -82,6 +82,7 @@ static host_status prepare(run_state *r, const char *path, host_error *error)
         agree(r->node, cluster_scene_open(path, &o->view, o->cluster.options.memory_bytes, &r->scene, error), error);
     if (status != HOST_OK)
         return status;
+    r->scene.draws_machine = o->cluster.machine;
     const cluster_source source = cluster_scene_source(&r->scene);
     status = told(cluster_open(&o->cluster.options, &source, r->node, &r->cluster, &why), &why, error);
     if (status == HOST_OK)
@@ -214,6 +215,9 @@ static void print_summary(const run_state *r)
     }
     text_print_count("held at most", held, " bytes of voxels by a node");
     text_print_count("sent", sent, " bytes of picture");
+    if (o->machine)
+        printf("cycles             %.0f, the slowest machine %llu, the network %.0f\n",
+               (double)p->slowest_cycles + p->network_cycles, (unsigned long long)p->slowest_cycles, p->network_cycles);
     printf("time               %.6f s, rendering of the slowest node %.6f s\n", p->frame_s, p->slowest_s);
     printf("frame_sha256       %s\n", r->result.frame_sha256);
 }
@@ -237,7 +241,7 @@ static host_status check(run_state *r, command_options *o, const char *path, hos
 {
     host_status status = reference_wish_settle(&o->wish, &o->view, error);
     if (status == HOST_OK)
-        status = cluster_options_check(&o->wish, &o->view, error);
+        status = cluster_options_check(&o->cluster, &o->wish, &o->view, error);
     if (status == HOST_OK && cluster_rank(r->node) == 0)
         status = output_set_check(&o->outputs, &o->view, path, error);
     return status;
@@ -246,6 +250,10 @@ static host_status check(run_state *r, command_options *o, const char *path, hos
 /* The processes of a computer share its cores; a simulated node has one. */
 static void share_cores(run_state *r, command_options *o)
 {
+    if (o->cluster.machine) { /* and machines send what their frame buffers hold */
+        o->cluster.options.machine = &r->scene.machine;
+        o->cluster.options.pixel_bits = 16;
+    }
     const long shared = sysconf(_SC_NPROCESSORS_ONLN) / cluster_local_ranks(r->node);
     const long cores = o->cluster.options.nodes > 0 ? 1 : shared;
     o->cluster.options.renderer = (reference_options){o->wish.choice.device, o->view.threads, o->view.simd};

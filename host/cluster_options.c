@@ -85,6 +85,26 @@ static host_status set_memory(void *target, const option *o, const char *value, 
     return HOST_OK;
 }
 
+static host_status set_renderer(void *target, const option *o, const char *value, host_error *error)
+{
+    static const char *const words[] = {"reference", "machine", NULL};
+    int i;
+    host_status status = option_word(o, value, words, "reference or machine", &i, error);
+    if (status == HOST_OK)
+        ((cluster_wish *)target)->machine = i > 0;
+    return status;
+}
+
+static host_status set_link(void *target, const option *o, const char *value, host_error *error)
+{
+    double model[2];
+    if (!text_numbers(value, ',', 2, 2, model) || model[0] < 0 || model[0] > 1e9 || model[1] < 1e-3 || model[1] > 1e6)
+        return option_refuse(o, value, "CYCLES,BYTES: a latency from 0 to 1e9, bytes a cycle from 0.001 to 1e6", error);
+    ((cluster_wish *)target)->options.latency_cycles = model[0];
+    ((cluster_wish *)target)->options.bytes_per_cycle = model[1];
+    return HOST_OK;
+}
+
 static host_status set_then(void *target, const option *o, const char *value, host_error *error)
 {
     cluster_wish *w = target;
@@ -113,6 +133,13 @@ static const option rows[] = {
      "exchange what changes owner; output is of the last"},
     {"node-memory", 0, "MIB", false, set_memory, "voxels that a node may hold (no limit)"},
     {"nodes", 0, "N", false, set_nodes, "simulate 1 to 1024 nodes in one process, one after another"},
+    {"renderer", 0, "NAME", false, set_renderer,
+     "reference, machine (reference)\n"
+     "what draws: with machine each node is one, of --machine and\n"
+     "--set, and costs cycles"},
+    {"link", 0, "CYCLES,BYTES", false, set_link,
+     "of machines: latency of a message, bytes a cycle of each\n"
+     "(200,16)"},
     {"network", 0, "MICROS,GBIT", false, set_network,
      "of simulated nodes: latency of a message, rate of each\n"
      "(20,10)"},
@@ -125,11 +152,28 @@ cluster_wish cluster_wish_default(void)
                                       .composite = CLUSTER_RADIX_K,
                                       .subvolume_vox = 8,
                                       .pixel_bits = 32,
+                                      .latency_cycles = 200,
+                                      .bytes_per_cycle = 16,
                                       .latency_s = 20e-6,
                                       .bytes_per_s = 10e9 / 8}};
 }
 
-host_status cluster_options_check(const reference_wish *wish, const view_options *v, host_error *error)
+/* Nodes that are machines. */
+static host_status check_machine(const cluster_wish *nodes, const reference_wish *wish, const vodr_machine *machine,
+                                 host_error *error)
+{
+    const char *with = machine->blend == VODR_BLEND_MIP           ? "blend mip"
+                       : wish->choice.method == REFERENCE_RAYCAST ? "--method raycast"
+                       : wish->choice.shading == REFERENCE_PHONG  ? "--shading phong"
+                       : wish->choice.numbers != REFERENCE_FLOAT  ? "--numbers"
+                       : nodes->changes > 0                       ? "--then"
+                       : nodes->options.weight == CLUSTER_TIME    ? "--weight time"
+                                                                  : NULL;
+    return with ? host_fail(error, HOST_BAD_INPUT, "--renderer machine does not go with %s", with) : HOST_OK;
+}
+
+host_status cluster_options_check(const cluster_wish *nodes, const reference_wish *wish, const view_options *v,
+                                  host_error *error)
 {
     const reference_accel accel = wish->choice.accel;
     vodr_machine machine;
@@ -144,7 +188,7 @@ host_status cluster_options_check(const reference_wish *wish, const view_options
         accel != REFERENCE_ACCEL_BEST)
         return host_fail(error, HOST_BAD_INPUT, "--accel %s: of parts of a volume, mip has none and best",
                          reference_accel_name(&wish->choice));
-    return status;
+    return status == HOST_OK && nodes->machine ? check_machine(nodes, wish, &machine, error) : status;
 }
 
 const char *cluster_balance_name(cluster_balance balance)

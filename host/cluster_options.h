@@ -14,6 +14,7 @@ typedef struct cluster_wish {
     cluster_options options;
     const char *then[CLUSTER_CHANGES]; /* transfer functions after the first */
     int changes;
+    bool machine; /* draws, in place of the reference renderer */
 } cluster_wish;
 
 /* Takes a cluster_wish as its target. */
@@ -23,7 +24,8 @@ extern const option_table option_cluster;
 cluster_wish cluster_wish_default(void);
 
 /* Refuses what does not go together. */
-host_status cluster_options_check(const reference_wish *wish, const view_options *v, host_error *error);
+host_status cluster_options_check(const cluster_wish *nodes, const reference_wish *wish, const view_options *v,
+                                  host_error *error);
 
 /* The words that the options take. */
 const char *cluster_balance_name(cluster_balance balance);

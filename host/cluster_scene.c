@@ -151,6 +151,19 @@ static void release(void *context, void *owner)
     free(owner);
 }
 
+/* The densities that machines draw. */
+static cluster_status load_densities(const cluster_scene *s, volume *v, reference_volume *out, vodr_error *error)
+{
+    const scene *all = &s->scene;
+    vodr_volume made = {0};
+    host_error why;
+    host_status status = volume_quantise(v, all->window_lo, all->window_hi, all->machine.density_bits, &made, &why);
+    *out = (reference_volume){.dims_vox = {v->dims_vox[0], v->dims_vox[1], v->dims_vox[2]},
+                              .type = made.voxel_bytes == 1 ? REFERENCE_UINT8 : REFERENCE_UINT16,
+                              .voxels = made.voxels};
+    return status == HOST_OK ? CLUSTER_OK : failed(status, &why, error);
+}
+
 static cluster_status load(void *context, const int32_t lo[3], const int32_t hi[3], reference_volume *out, void **owner,
                            vodr_error *error)
 {
@@ -165,8 +178,10 @@ static cluster_status load(void *context, const int32_t lo[3], const int32_t hi[
     }
     v->min = s->scene.volume.min; /* of the whole: what voxels are counted from */
     v->max = s->scene.volume.max;
-    *out = reference_scene_store(v);
     *owner = v;
+    if (s->draws_machine)
+        return load_densities(s, v, out, error);
+    *out = reference_scene_store(v);
     return CLUSTER_OK;
 }
 
@@ -183,13 +198,29 @@ cluster_source cluster_scene_source(cluster_scene *s)
                             .voxel_bytes = (int32_t)volume_type_bytes(v->type)};
 }
 
+/* What machines draw with. Volumes of bytes keep them, and share the map to densities. */
+static host_status settle_machine(cluster_scene *s, host_error *error)
+{
+    scene *all = &s->scene;
+    vodr_volume bytes = {0};
+    host_status status = scene_table(&all->machine, &all->transfer, all->window_lo, all->window_hi, all->depth_vox,
+                                     &all->entries, &all->table, error);
+    if (status == HOST_OK && volume_type_bytes(all->volume.type) == 1)
+        status =
+            volume_quantise(&all->volume, all->window_lo, all->window_hi, all->machine.density_bits, &bytes, error);
+    s->machine = (cluster_machine){all->machine, all->view, all->table, bytes.map};
+    return status;
+}
+
 host_status cluster_scene_settle(cluster_scene *s, const view_options *options, const reference_choice *choice,
                                  host_error *error)
 {
     volume *v = &s->scene.volume;
     v->min = s->least <= s->most ? s->least : 0;
     v->max = s->least <= s->most ? s->most : 0;
-    host_status status = scene_settle(&s->scene, options, !choice->fixed, error);
+    host_status status = scene_settle(&s->scene, options, !choice->fixed && !s->draws_machine, error);
+    if (status == HOST_OK && s->draws_machine)
+        status = settle_machine(s, error);
     return status == HOST_OK ? reference_scene_job(&s->scene, choice, &s->table, &s->job, error) : status;
 }
 

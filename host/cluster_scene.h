@@ -14,7 +14,9 @@ typedef struct cluster_scene {
     volume near;         /* voxels of a box from which others are cut; voxels NULL: none */
     int32_t near_lo[3];
     reference_march_job job;
-    double *table; /* of the job, owned */
+    double *table;           /* of the job, owned */
+    bool draws_machine;      /* set before the source is made: it loads densities, and */
+    cluster_machine machine; /* is settled too */
 } cluster_scene;
 
 /* Reads the header. To be closed on success. */

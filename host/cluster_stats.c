@@ -37,6 +37,11 @@ static json_t *samples(const cluster_share *s)
     return json_integer((json_int_t)s->samples);
 }
 
+static json_t *cycles(const cluster_share *s)
+{
+    return json_integer((json_int_t)s->cycles);
+}
+
 static json_t *render_s(const cluster_share *s)
 {
     return json_real(s->render_s);
@@ -77,11 +82,11 @@ static json_t *per_rank(const cluster_report *r)
     static const struct {
         const char *name;
         value_of *value;
-    } rows[] = {{"subvolumes", subvolumes}, {"weight", weight},         {"parts", parts},
-                {"clusters", clusters},     {"held_bytes", held_bytes}, {"samples", samples},
-                {"render_s", render_s},     {"cpu_s", cpu_s},           {"composite_s", composite_s},
-                {"sent_bytes", sent_bytes}, {"scan_s", scan_s},         {"divide_s", divide_s},
-                {"load_s", load_s}};
+    } rows[] = {{"subvolumes", subvolumes},   {"weight", weight},         {"parts", parts},
+                {"clusters", clusters},       {"held_bytes", held_bytes}, {"samples", samples},
+                {"cycles", cycles},           {"render_s", render_s},     {"cpu_s", cpu_s},
+                {"composite_s", composite_s}, {"sent_bytes", sent_bytes}, {"scan_s", scan_s},
+                {"divide_s", divide_s},       {"load_s", load_s}};
     json_t *object = json_object();
     int failed = 0;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -143,6 +148,10 @@ host_status cluster_stats_write(output *o, const scene *s, const view_options *v
     json_t *balance = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:o, s:o}", "lbr", p->lbr, "lbr_weight", p->lbr_weight,
                                 "lbr_time", p->lbr_time, "slowest_s", p->slowest_s, "barrier_share", p->barrier_share,
                                 "frame_s", p->frame_s, "per_rank", per_rank(p), "changes", changes(r));
+    if (options->machine)
+        json_object_set_new(balance, "cycles",
+                            json_pack("{s:f, s:I, s:f}", "total", (double)p->slowest_cycles + p->network_cycles,
+                                      "slowest", (json_int_t)p->slowest_cycles, "network", p->network_cycles));
     if (json_object_update(root, balance) != 0) {
         json_decref(root);
         root = NULL;

@@ -124,6 +124,28 @@ done
     bad 2 "none.tf" "$vodr" cluster $raw --then none.tf
 }
 
+# ---- nodes that are machines ----
+wide='--set fb_bits=16 --set tf_bits=16 --set cache_bytes=8192'
+# shellcheck disable=SC2086
+for look in parallel perspective; do
+    eval "view=\$$look"
+    good "the machine, $look" "$vodr" render $raw $view $wide --cycles --raw m.rgba -o m.png --stats r.json
+    good "one node" "$vodr" cluster $raw $view $wide --renderer machine --subvolume 64 --raw x.rgba --stats s.json
+    same "is the machine" x.rgba m.rgba
+    equal "and takes its cycles" "$(value slowest s.json)" "$(value total r.json)"
+    for nodes in 2 7; do
+        good "$nodes machines" "$vodr" cluster $raw $view $wide --renderer machine --nodes $nodes --balance best -o x.png --stats s.json
+        good "a picture without seams" "$vodr" compare x.png m.png --tolerance 0.05
+        equal "cycles of each" "$(array cycles s.json | sort -n | tail -n 1)" "$(value slowest s.json)"
+    done
+done
+# shellcheck disable=SC2086
+{
+    bad 2 "--renderer machine does not go with --then" "$vodr" cluster $raw --renderer machine --then bone
+    bad 2 "--renderer machine does not go with blend mip" "$vodr" cluster $raw --renderer machine --blend mip
+    bad 2 "--link '1': must be CYCLES,BYTES" "$vodr" cluster $raw --link 1
+}
+
 # ---- what shows nothing, or hardly anything ----
 head -c 27 /dev/zero >small.raw
 # shellcheck disable=SC2086
@@ -223,6 +245,10 @@ END
     good "changes, 5 processes" ranks 5 "$vodr" cluster $raw $then --subvolume 4 -o x.png --stats s.json
     alike "the last function's picture" parallel over
     verdict "changes move little" "$(little s.json)"
+    good "3 machines" ranks 3 "$vodr" cluster $raw $perspective $wide --renderer machine -o x.png --stats s.json
+    good "the machine's picture" "$vodr" compare x.png m.png --tolerance 0.05
+    good "the same, simulated" "$vodr" cluster $raw $perspective $wide --renderer machine --nodes 3 --stats y.json
+    equal "as many cycles" "$(grep -A 4 '"cycles": {' s.json)" "$(grep -A 4 '"cycles": {' y.json)"
     good "more processes than sub-volumes" ranks 5 "$vodr" cluster small.raw --dims 3x3x3 --raw x.rgba
     ends 2 "vodr: none.nrrd: " ranks 3 "$vodr" cluster none.nrrd -o x.png
     ends 2 "vodr: --balance 'even'" ranks 3 "$vodr" cluster $raw --balance even -o x.png
