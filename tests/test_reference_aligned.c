@@ -269,6 +269,8 @@ static void test_thin(void **state)
                                                views[n / 3].roll_deg, n % 2);
             reference_march_job job = job_of(&c);
             job.shading = n % 5 ? REFERENCE_UNLIT : REFERENCE_PHONG;
+            job.numbers = n % 4 ? REFERENCE_FLOAT : REFERENCE_DOUBLE;
+            job.copies = n % 7 ? 0 : 1;
             reference *r = open_cpu(sizes[i], voxels, ways[n % 3]);
             draw(r, job, REFERENCE_ACCEL_NONE, none);
             draw(r, job, REFERENCE_ACCEL_ALIGNED, other);
