@@ -35,15 +35,18 @@ static void fill_layers(const cpu_job *job, int32_t k0, int32_t k1, uint64_t *sa
     const filling *g = job->input;
     const bool quads = g->layout == KERNEL_QUADS;
     const int32_t step = quads ? LAYOUT_QUAD : 1, begin = quads ? -LAYOUT_QUAD : -LAYOUT_MARGIN_VOX;
-    const int32_t rows = (int32_t)rows_of(g->layout, g->size[1]) * step;
+    const int32_t rows = (int32_t)rows_of(g->layout, g->size[1]);
     (void)samples;
     for (int32_t k = k0; k < k1; k++) {
         const float *layer = g->from + (size_t)clamp(k - LAYOUT_MARGIN_VOX, g->size[2]) * g->apart[2];
+        float *to = (float *)job->output + (size_t)k * g->layer;
         for (int32_t j = 0; j < rows; j++) {
-            const float *row = layer + (size_t)clamp(j + begin, g->size[1]) * g->apart[1];
-            float *to = (float *)job->output + (size_t)k * g->layer + (size_t)(j / step) * g->row + (size_t)(j % step);
-            for (int32_t i = -LAYOUT_MARGIN_VOX; i < g->size[0] + LAYOUT_MARGIN_VOX; i++, to += step)
-                *to = row[(size_t)clamp(i, g->size[0]) * g->apart[0]];
+            const float *row[LAYOUT_QUAD];
+            for (int32_t n = 0; n < step; n++)
+                row[n] = layer + (size_t)clamp(j * step + n + begin, g->size[1]) * g->apart[1];
+            for (int32_t i = -LAYOUT_MARGIN_VOX; i < g->size[0] + LAYOUT_MARGIN_VOX; i++)
+                for (int32_t n = 0; n < step; n++)
+                    *to++ = row[n][(size_t)clamp(i, g->size[0]) * g->apart[0]];
         }
     }
 }

@@ -1,7 +1,6 @@
 /* device_cpu.c - the CPU as a device: bands of rows, or of layers, dealt out to threads. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "bounds.h"
@@ -235,24 +234,28 @@ static reference_status need_cubic(cpu_state *s, kernel_frame *f, reference_stat
     return status;
 }
 
-/* Puts a copy of the coefficients in the place of them. Where there is no memory for one, they are read as they are. */
+/* Puts a copy of the coefficients in the place of them. Where there is no memory for one, they are read as they are.
+ * The kernels of double read any copy in the order of the volume's axes, as a card does; those of float read rows of x,
+ * so that it is the frame's axes that are named after a sorted copy's. */
 static void align(cpu_state *s, const device_march *m, const cpu_kernels *k, kernel_frame *f, reference_stats *stats)
 {
     const device_alignment *a = &m->alignment;
-    const kernel_layout layout = k->quads && !a->sorted ? KERNEL_QUADS : KERNEL_WIDE;
-    const int32_t first = a->sorted ? a->fast_axis : 0;
+    const bool strides = m->numbers == REFERENCE_DOUBLE, sorted = a->sorted || strides;
+    const kernel_layout layout = k->quads && !sorted ? KERNEL_QUADS : KERNEL_WIDE;
+    const int32_t first = sorted ? a->fast_axis : 0;
     stats->copies = 1;
-    if (a->sorted && a->copies == 1)
+    if (sorted && a->copies == 1)
         return;
     const cpu_layout *copy = cpu_layout_of(s->layouts, &s->cubic[true].volume, layout, first, s->threads, stats);
     if (!copy)
         return;
-    if (a->sorted)
+    if (!strides)
         cpu_layout_turn_axes(f, first);
+    for (int n = 0; n < 3; n++)
+        f->volume.stride[strides ? (first + n) % 3 : n] = copy->stride[n];
     f->volume.layout = layout;
     f->volume.voxels = copy->first;
-    memcpy(f->volume.stride, copy->stride, sizeof copy->stride);
-    stats->copies = a->sorted ? 3 : 1;
+    stats->copies = sorted ? 3 : 1;
 }
 
 static const cpu_kernels *kernels_of(const cpu_state *s, const device_march *m)

@@ -379,6 +379,7 @@ static reference_status take_copy(cuda_state *s, const device_alignment *a, kern
     if (!c->copy[first]) {
         if (cudaMalloc(&c->copy[first], bounds_box_count(wide) * sizeof(float)) != cudaSuccess) {
             cudaGetLastError(); /* it has been seen to */
+            c->copy[first] = NULL;
             c->copies = 1;
             return REFERENCE_OK;
         }

@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "cubic_cases.h"
 #include "stand_in.h"
@@ -55,13 +54,6 @@ static const entry entries[] = {
 };
 
 enum { ENTRIES = sizeof entries / sizeof *entries };
-
-static double cpu_now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Each round has a function of its own, by a little. */
 static void fill_table(const request *q, int round, double *rgba)
@@ -135,7 +127,7 @@ static bool draw_view(const request *q, reference *r, int view, double *table, d
                 good = draw(r, job, e, pictures[1], &stats);
             }
             fill_table(q, round + 1, table);
-            const double begin_s = cpu_now_s();
+            const double begin_s = stopwatch_cpu_now_s();
             good = good && draw(r, job, e, pictures[!none], &stats);
             if (round < 0) {
                 e->preprocess_ms = stats.preprocess_ms;
@@ -145,7 +137,7 @@ static bool draw_view(const request *q, reference *r, int view, double *table, d
                 continue;
             }
             e->ms[round] = stats.draw_ms;
-            e->cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
+            e->cpu_ms[round] = 1e3 * (stopwatch_cpu_now_s() - begin_s);
             e->prepare_ms[round] = stats.prepare_ms;
             e->samples = stats.samples;
         }
@@ -204,13 +196,13 @@ static int preprocess(const request *q)
             reference *r = NULL;
             reference_stats stats = {0};
             fill_table(q, 0, table);
-            const double begin_s = cpu_now_s();
+            const double begin_s = stopwatch_cpu_now_s();
             good = open_volume(q, voxels, &r) && stand_in_rays(&q->volume, 0, &job.camera) &&
                    draw(r, job, &entries[i], picture, &stats);
             if (good)
                 snprintf(device, sizeof device, "%s", reference_device_name(r));
             ms[round] = stats.preprocess_ms;
-            cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
+            cpu_ms[round] = 1e3 * (stopwatch_cpu_now_s() - begin_s);
             reference_close(r);
         }
         const double median_ms = stopwatch_median(ms, (size_t)q->rounds);

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "mip_case.h"
 #include "stand_in.h"
@@ -22,13 +21,6 @@ static bool say(reference_status status, const char *what, const vodr_error *err
     if (status != REFERENCE_OK)
         fprintf(stderr, "mip_frames: %s: %s\n", what, error->text);
     return status == REFERENCE_OK;
-}
-
-static double cpu_now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* ---- matrix ---- */
@@ -117,11 +109,11 @@ static bool time_entries(const request *q, reference *r, const reference_march_j
         for (int i = 0; good && i < count; i++) {
             entry *e = &entries[i];
             reference_stats stats;
-            double begin_s = cpu_now_s();
+            double begin_s = stopwatch_cpu_now_s();
             good = draw(r, *job, e->accel, e->block_vox, pictures[e->accel != REFERENCE_ACCEL_NONE], &stats);
             e->samples = stats.samples;
             e->preprocess_ms += stats.preprocess_ms;
-            const double cpu_ms = 1e3 * (cpu_now_s() - begin_s);
+            const double cpu_ms = 1e3 * (stopwatch_cpu_now_s() - begin_s);
             if (round < 0) {
                 e->first_cpu_ms = cpu_ms;
             } else {

@@ -12,20 +12,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "prefilter.h"
 #include "reference.h"
 #include "stopwatch.h"
 
 enum { MAX_ROUNDS = 99 };
-
-static double cpu_now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* `count` things of a file, to be freed; NULL after a sentence. */
 static void *read_all(const char *path, size_t count, size_t bytes)
@@ -93,14 +85,14 @@ static bool draw(reference *r, reference_march_job job, reference_accel accel, d
     reference_stats stats;
     vodr_error error;
     job.accel = accel;
-    const double begin_s = cpu_now_s();
+    const double begin_s = stopwatch_cpu_now_s();
     if (reference_march(r, &job, rgba, &stats, &error) != REFERENCE_OK) {
         fprintf(stderr, "teem_frames: %s\n", error.text);
         return false;
     }
     if (round >= 0) {
         t->ms[round] = stats.draw_ms;
-        t->cpu_ms[round] = 1e3 * (cpu_now_s() - begin_s);
+        t->cpu_ms[round] = 1e3 * (stopwatch_cpu_now_s() - begin_s);
     }
     t->samples = stats.samples;
     return true;
