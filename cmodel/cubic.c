@@ -61,6 +61,16 @@ static int32_t round_density(int32_t value, int32_t drop_bits, int32_t most)
     return density < 0 ? 0 : density > most ? most : density;
 }
 
+/* Four voxels: they get their guard bits with the sum, which comes to the same and fits 32 bits before. */
+static inline int32_t weigh_voxels(const cubic *c, const cubic_weights *w, const int32_t voxels[CUBIC_TAPS])
+{
+    const int32_t drop_bits = c->weight_bits - c->guard_bits;
+    int32_t sum = 0;
+    for (int i = 0; i < CUBIC_TAPS; i++)
+        sum += w->tap[i] * voxels[i];
+    return drop_bits >= 0 ? sum >> drop_bits : sum * (1 << -drop_bits);
+}
+
 /* Numbers have 22 bits with their sign, a sum 36. */
 static inline int32_t weigh(const cubic *c, const cubic_weights *w, const int32_t values[CUBIC_TAPS])
 {
@@ -72,11 +82,9 @@ static inline int32_t weigh(const cubic *c, const cubic_weights *w, const int32_
 
 int32_t cubic_value(const cubic *c, const int32_t share[3], const int32_t voxels[CUBIC_VOXELS])
 {
-    int32_t wide[CUBIC_VOXELS], along_x[16], along_y[4];
-    for (int i = 0; i < CUBIC_VOXELS; i++)
-        wide[i] = voxels[i] * (1 << c->guard_bits);
+    int32_t along_x[16], along_y[4];
     for (int i = 0; i < 16; i++)
-        along_x[i] = weigh(c, &c->weights[share[0]], wide + 4 * i);
+        along_x[i] = weigh_voxels(c, &c->weights[share[0]], voxels + 4 * i);
     for (int i = 0; i < 4; i++)
         along_y[i] = weigh(c, &c->weights[share[1]], along_x + 4 * i);
     return round_density(weigh(c, &c->weights[share[2]], along_y), c->drop_bits, c->most);

@@ -276,7 +276,8 @@ static void make_scene(fused_scene *s, const pipeline *count, const vodr_volume 
     s->direct = count->texture;
     s->direct.whole = true;
     s->droppable = m->blend == VODR_BLEND_OVER || m->kill_transparent;
-    s->sparse = !fused_brick_edges(m, s->view, s->edge_vox) || filter_is_cubic(m);
+    s->sparse = !fused_brick_edges(m, s->view, s->edge_vox);
+    s->cubic = filter_is_cubic(m);
     for (int c = 0; c < 3 && s->sparse; c++)
         s->edge_vox[c] = volume->dims_vox[c];
 }

@@ -20,9 +20,10 @@ typedef struct fused_scene {
     const fused_kernels *kernels;
     const texture_unit *texture; /* for its tables */
     texture_unit direct;         /* sparse: the same, drawing the volume whole */
-    bool sparse;                 /* so few samples that voxels are fetched one by one from the volume, undivided */
+    bool sparse;                 /* so few samples that voxels are fetched one by one from the volume, undivided; */
+    bool cubic;                  /* or 64 a sample, too: undivided when there are few samples, else by bricks */
     bool droppable;              /* fragments of a transparent brick leave no trace, neither in frame nor in marks */
-    int32_t edge_vox[3];         /* of the fast path's bricks; sparse: of the volume */
+    int32_t edge_vox[3];         /* of the fast path's bricks; undivided: of the volume */
     uint32_t *table8;            /* by density: a packed colour, or in mip a token; */
     uint64_t *table16;           /* or, where a pixel's channels have 16 bits, a packed colour */
     marks marks;                 /* filled by all, each thread its rows */

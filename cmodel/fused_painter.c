@@ -5,15 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cubic.h"
 #include "error.h"
+#include "layout.h"
 #include "rasterizer.h"
 #include "slice_generator.h"
+#include "voxels.h"
 
 vodr_status fused_painter_start(fused_painter *p, const fused_scene *scene, vodr_error *error)
 {
     memset(p, 0, sizeof *p);
     p->scene = scene;
-    if (scene->sparse)
+    if (scene->sparse || scene->cubic)
         return VODR_OK;
     return fused_brick_start(&p->brick, scene->machine, scene->volume, scene->edge_vox, scene->kernels, error);
 }
@@ -29,7 +32,7 @@ static void filter(fused_painter *p)
 {
     const fused_kernels *k = p->scene->kernels;
     const fused_texture *t = &p->brick.texture;
-    if (p->scene->sparse) /* add_span() did */
+    if (p->scene->sparse || p->scene->cubic) /* add_span() did */
         return;
     if (p->brick.linear)
         (p->brick.wide ? k->linear12 : k->linear8)(t, p->count, &p->batch);
@@ -102,7 +105,7 @@ static void flush(fused_painter *p)
 
 /* ---- the way into a batch: divide, slice, rasterize, address ---- */
 
-/* Puts a span into the batch, in pieces where it is long: positions, or when sparse densities at once. */
+/* Puts a span into the batch, in pieces where it is long: positions, or when sparse or cubic densities at once. */
 static void add_span(fused_painter *p, const brick_slice *slice, const span *s, fused_row *row)
 {
     for (int32_t x = s->x0, n; x < s->x1; x += n) {
@@ -111,7 +114,7 @@ static void add_span(fused_painter *p, const brick_slice *slice, const span *s, 
         const span piece = {.y = s->y, .x0 = x, .x1 = x + n};
         for (int c = 0; c < 3; c++)
             row->a[c] = (uint64_t)numerator_at(&slice->plane, c, x, s->y);
-        if (p->scene->sparse)
+        if (p->scene->sparse || p->scene->cubic)
             texture_unit_filter(&p->scene->direct, slice, &piece, p->batch.density + p->count);
         else
             p->scene->kernels->address(&p->brick.texture, row, n, &p->batch, p->count);
@@ -126,6 +129,18 @@ static void add_span(fused_painter *p, const brick_slice *slice, const span *s, 
 static bool transparent(const fused_scene *s, int32_t min, int32_t max)
 {
     return s->texture->transparent_to[s->machine->blend == VODR_BLEND_MIP ? 0 : min] >= max;
+}
+
+/* Whether a brick of a cubic filter has anything to show. */
+static bool shows(const fused_scene *s, const vox_box *box)
+{
+    int32_t min, max;
+    const vox_box reach = voxels_reach(s->volume->dims_vox, box, filter_border_vox(s->machine));
+    if (!s->droppable)
+        return true;
+    voxels_range(s->volume, stored_bits(s->machine), &reach, &min, &max);
+    filter_range(s->machine, &min, &max);
+    return !transparent(s, min, max);
 }
 
 /* Repacks a brick that has fragments and sets the positions' origin; false when the brick can be dropped. */
@@ -160,7 +175,7 @@ void fused_painter_draw(fused_painter *p, fused_band *band, const candidate *c)
         for (int i = 0; i < 3; i++)
             row.step[i] = (uint64_t)slice.plane.step_u[i];
         while (rasterizer_next(&rows, &here)) {
-            if (!loaded && !load(p, &c->box, &row))
+            if (!loaded && !(s->cubic ? shows(s, &c->box) : load(p, &c->box, &row)))
                 return;
             loaded = true;
             add_span(p, &slice, &here, &row);

@@ -21,23 +21,6 @@ vox_box voxels_reach(const int32_t dims_vox[3], const vox_box *box, int32_t bord
     return reach;
 }
 
-void voxels_row(const vodr_volume *volume, int32_t bits, size_t first, int32_t count, uint16_t *densities)
-{
-    uint16_t limit = (uint16_t)((1 << bits) - 1);
-    if (volume->voxel_bytes == 2) {
-        const uint16_t *voxel = (const uint16_t *)volume->voxels + first;
-        for (int32_t i = 0; i < count; i++)
-            densities[i] = voxel[i] < limit ? voxel[i] : limit;
-        return;
-    }
-    const uint8_t *voxel = (const uint8_t *)volume->voxels + first;
-    const uint16_t *restrict map = volume->map;
-    for (int32_t i = 0; i < count && map; i++)
-        densities[i] = map[voxel[i]];
-    for (int32_t i = 0; i < count && !map; i++)
-        densities[i] = voxel[i];
-}
-
 void voxels_range(const vodr_volume *volume, int32_t bits, const vox_box *box, int32_t *min, int32_t *max)
 {
     enum { CHUNK = 256 };

@@ -201,6 +201,10 @@ expect "machine list has paper-32" '^paper-32 ' ../out
         same "draws the same bytes" m.rgba n.rgba
         bad 2 "filter=$filter: texture_unit in Verilog takes nearest and linear only" "$vodr" render $raw -o no.png --filter $filter --rtl all
         bad 2 "a brick of 8 voxels (brick_min) needs" "$vodr" render $raw -o no.png --filter $filter --set texture_memory_bytes=1024
+        printf '\005' >one.raw
+        good "a single voxel, --filter $filter" "$vodr" render one.raw --dims 1x1x1 --window 0:255 --filter $filter --size 3x3 --raw m.rgba
+        good "a single voxel, --filter linear" "$vodr" render one.raw --dims 1x1x1 --window 0:255 --size 3x3 --raw n.rgba
+        same "is as constant" m.rgba n.rgba
         bad 2 "draw whole volumes" "$vodr" cluster $raw -o no.png --set filter=$filter
         for blend in over mip; do
             good "reference --filter $filter --blend $blend" "$vodr" reference $raw --filter $filter --blend $blend \

@@ -31,6 +31,16 @@ for blocks in all top pixel_cache,alpha_blender; do
     statistics rtl.json >rtl.txt
     same "--rtl $blocks counts the same" c.txt rtl.txt
 done
+others=volume_divider,slice_generator,rasterizer,alpha_blender,pixel_cache,frame_buffer
+for filter in cardinal bspline; do
+    draw --filter $filter --cycles --stats cubic.json --raw cubic.rgba >/dev/null
+    good "--filter $filter, all in Verilog but the texture unit" draw --filter $filter --rtl $others --stats rtl.json --raw rtl.rgba
+    same "--filter $filter draws the same bytes" cubic.rgba rtl.rgba
+    statistics cubic.json >cubic.txt
+    statistics rtl.json >rtl.txt
+    same "--filter $filter counts the same" cubic.txt rtl.txt
+    bad 2 "filter=$filter: texture_unit in Verilog takes nearest and linear only" draw --filter $filter --rtl texture_unit
+done
 good '--compare transactions' draw --rtl all --compare transactions --raw rtl.rgba
 same '--compare transactions draws the same bytes' c.rgba rtl.rgba
 good 'a block of somebody else' draw --rtl "alpha_blender=$root/docs/examples/over_blender.v" --raw rtl.rgba

@@ -49,6 +49,9 @@ static void bad_volumes(void **state)
     c.input.voxel_bytes = 3;
     refuses_everywhere(&c, &m, "voxel_bytes is 3 but must be 1 or 2");
     c.input.voxel_bytes = 1;
+    m.filter = VODR_FILTER_BSPLINE;
+    refuses_everywhere(&c, &m, "voxel_bytes is 1 but must be 2: filter=bspline takes coefficients");
+    m.filter = VODR_FILTER_LINEAR;
     c.input.map = NULL;
     m.density_bits = 12;
     refuses_everywhere(&c, &m, "8-bit voxels without a map need density_bits=8, not 12");
