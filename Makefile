@@ -115,7 +115,7 @@ synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and writ
 	@scripts/tables $(BUILD) synthesis
 	@cat $(BUILD)/tables/synthesis
 
-coverage: ## what the tests reach, and docs/table-coverage.md again; fails below what is asked (ten minutes)
+coverage: $(BUILD)/gen/vodr_hw.vh ## what the tests reach, and docs/table-coverage.md again; fails below what is asked (half an hour)
 	@scripts/deps coverage
 	@$(MAKE) -s $(PARALLEL) BUILD=$(BUILD)/coverage CFLAGS=-O1 COVER='-O0 --coverage -fprofile-update=atomic' NVCC= \
 	    $(addprefix $(BUILD)/coverage/,vodr tests/digest tests/lockstep/lockstep) \
