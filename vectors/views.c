@@ -127,7 +127,10 @@ vodr_view views_wild(rng *r, const int32_t dims_vox[3], bool perspective)
 
 vodr_view views_large(rng *r, const int32_t dims_vox[3])
 {
-    return wild(r, dims_vox, rng_one_in(r, 2), VODR_MAX_SIZE_PX, 12);
+    vodr_view view = wild(r, dims_vox, rng_one_in(r, 2), VODR_MAX_SIZE_PX, 12);
+    if (rng_one_in(r, 8))
+        view.depth_step = 0; /* all slices lie in one */
+    return view;
 }
 
 static int32_t any_size(rng *r)

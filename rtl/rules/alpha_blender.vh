@@ -4,9 +4,10 @@ function premultiplied(input [PIXEL-1:0] pixel); // no channel above alpha; in m
                     : pixel[0 +: FB_BITS] <= pixel[3*FB_BITS +: FB_BITS] && pixel[FB_BITS +: FB_BITS] <= pixel[3*FB_BITS +: FB_BITS] &&
                       pixel[2*FB_BITS +: FB_BITS] <= pixel[3*FB_BITS +: FB_BITS];
 endfunction
+localparam [BITS:0] RULE_WAITING = NONBLOCKING != 0 ? DEPTH : 1; // a blocking cache reads one pixel at a time
 (* keep *) wire rules =
     blend != 2'd3 &&                            // there is no such blend
     !(rst && pixel_valid) &&                    // in reset no valid is up
     (rst || !pixel_valid || count != 0) &&      // a pixel is read for a fragment that waits for it
     (!pixel_valid || (premultiplied(pixel_rgba) && premultiplied(source))) &&
-    (rst || NONBLOCKING != 0 || (count <= 1 && left <= 1)); // a blocking cache reads one pixel at a time
+    (rst || (count <= RULE_WAITING && left <= RULE_WAITING));

@@ -55,13 +55,16 @@ static verdict against_vectors(run *r, const char *module)
     return !replayed ? BROKEN : first.line ? KILLED : SURVIVES;
 }
 
-/* Traffic of a seed, if it is one of this module: of other sizes of memory it is none. *count is what is left to do. */
+/* Traffic of a seed, of every other one with a volume and a frame as large as there can be. That of another module,
+ * which has other sizes of memory, is none. *count is what is left to do. */
 static verdict episode(run *r, const block_bench *what, uint64_t seed, uint64_t *count)
 {
     bench *b = calloc(1, sizeof *b);
     lockstep *pair = calloc(1, sizeof *pair);
     verdict outcome = BROKEN;
-    bool opened = b && pair && bench_open(b, what, &r->choice.machine, seed, &r->error) == VODR_OK;
+    vodr_status (*const open)(bench *, const block_bench *, const vodr_machine *, uint64_t, vodr_error *) =
+        what->large && seed % 2 == 0 ? bench_open_large : bench_open;
+    bool opened = b && pair && open(b, what, &r->choice.machine, seed, &r->error) == VODR_OK;
     char *header = opened ? header_text(&r->choice, b) : NULL;
     if (header && strcmp(header, r->header) != 0) {
         outcome = SURVIVES;
