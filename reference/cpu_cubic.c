@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "cpu_job.h"
+#include "device.h"
 #include "pages.h"
 #include "prefilter.h"
 
@@ -105,7 +106,7 @@ reference_status cpu_cubic_ranges(cpu_cubic *c, const reference_volume *v, const
     reference_status status = cpu_cubic_volume(c, v, r->spline, threads, stats, error);
     if (status != REFERENCE_OK)
         return status;
-    const double begin_ms = cpu_now_ms();
+    const double begin_ms = reference_now_ms();
     bounding b = {rows,
                   {.volume = c->volume,
                    .spline = r->spline,
@@ -125,7 +126,7 @@ reference_status cpu_cubic_ranges(cpu_cubic *c, const reference_volume *v, const
     if (good)
         cpu_job_run(threads, &job);
     *r->scale = c->scale;
-    stats->preprocess_ms += cpu_now_ms() - begin_ms;
+    stats->preprocess_ms += reference_now_ms() - begin_ms;
     if (good && job.samples == 0)
         return REFERENCE_OK;
     if (b.job.codes) {

@@ -1,14 +1,7 @@
 /* cpu_job.c - work in rows, dealt out to threads in bands. */
 #include "cpu_job.h"
 
-#include <time.h>
-
-double cpu_now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
+#include "device.h"
 
 static void *thread_main(void *context)
 {
@@ -32,7 +25,7 @@ double cpu_job_run(int32_t threads, cpu_job *job)
 {
     pthread_t thread[MAX_THREADS];
     int32_t started = 0;
-    double begin_ms = cpu_now_ms();
+    double begin_ms = reference_now_ms();
     pthread_mutex_init(&job->lock, NULL);
     while (started < threads - 1 && pthread_create(&thread[started], NULL, thread_main, job) == 0)
         started++;
@@ -40,5 +33,5 @@ double cpu_job_run(int32_t threads, cpu_job *job)
     while (started > 0)
         pthread_join(thread[--started], NULL);
     pthread_mutex_destroy(&job->lock);
-    return cpu_now_ms() - begin_ms;
+    return reference_now_ms() - begin_ms;
 }

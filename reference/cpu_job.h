@@ -26,6 +26,4 @@ struct cpu_job {
 /* Returns milliseconds. A thread that cannot be started is done without. */
 double cpu_job_run(int32_t threads, cpu_job *job);
 
-double cpu_now_ms(void);
-
 #endif

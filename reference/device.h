@@ -58,6 +58,9 @@ const device_ops *device_cuda(void);
 reference_status reference_fail(vodr_error *error, reference_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Of a clock that only goes forward. */
+double reference_now_ms(void);
+
 #ifdef __cplusplus
 }
 #endif

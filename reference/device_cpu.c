@@ -205,12 +205,12 @@ static reference_status need_bounds(cpu_state *s, kernel_mode mode, kernel_frame
     if ((mode != KERNEL_LEAP && mode != KERNEL_SEARCH) || f->filter == KERNEL_CUBIC)
         return REFERENCE_OK;
     const bool known = mode == KERNEL_SEARCH ? s->bounds.codes != NULL : s->block_edge_vox == f->blocks.edge_vox;
-    const double begin_ms = cpu_now_ms();
+    const double begin_ms = reference_now_ms();
     need_code(s);
     reference_status status = mode == KERNEL_LEAP ? need_blocks(s, f, error) : need_grids(s, f, error);
     bounds_decode(&s->code, f->filter, &f->bounds);
     if (!known)
-        stats->preprocess_ms += cpu_now_ms() - begin_ms;
+        stats->preprocess_ms += reference_now_ms() - begin_ms;
     return status;
 }
 

@@ -9,36 +9,14 @@
 #include <time.h>
 
 #include "aligned.h"
-#include "blocks.h"
 #include "bounds.h"
-#include "device.h"
 #include "part.h"
+#include "state.h"
 
 enum { MAX_TABLE = 1 << 20, MAX_COLUMNS = 4096, MOST_SAMPLES = 1 << 24 };
 
 /* A gradient of the whole window over this many finest voxels makes a whole surface. */
 static const double surface_vox = 1024;
-
-/* What ranges of blocks are made of. */
-typedef struct blocks_kind {
-    reference_filter filter; /* a cubic, or what stands for the others */
-    int32_t edge_vox;
-    hull_bound bound;
-    bool cells;
-} blocks_kind;
-
-struct reference {
-    const device_ops *ops;
-    void *state;
-    reference_volume volume;
-    blocks blocks;    /* the last asked for */
-    blocks_kind kind; /* what they are of */
-    hull_scale scale; /* of blocks of a cubic */
-    void *shown;      /* owned; of the last frame: what shows of cells, or codes of blocks */
-    float largest;    /* magnitude of a float, once a cubic needs it */
-    bool has_largest;
-    char name[DEVICE_NAME_CHARS];
-};
 
 reference_status reference_fail(vodr_error *error, reference_status status, const char *format, ...)
 {
@@ -50,7 +28,7 @@ reference_status reference_fail(vodr_error *error, reference_status status, cons
     return status;
 }
 
-static double now_ms(void)
+double reference_now_ms(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -104,133 +82,6 @@ void reference_close(reference *r)
 const char *reference_device_name(const reference *r)
 {
     return r->name;
-}
-
-/* ---- the machine's arithmetic ---- */
-
-/* Section 6 of docs/architecture.md: a table's channel converted from tf_bits to fb_bits. */
-static uint16_t convert_channel(uint16_t value, int32_t tf_bits, int32_t fb_bits)
-{
-    if (tf_bits == fb_bits)
-        return value;
-    return (uint16_t)(tf_bits == 8 ? value * 257 : (value + 128) / 257);
-}
-
-static reference_status check_table(const vodr_table *table, const vodr_machine *m, vodr_error *error)
-{
-    size_t count = (size_t)1 << m->density_bits;
-    if (table->count != count)
-        return reference_fail(error, REFERENCE_INVALID, "the table has %zu entries, must have %zu", table->count,
-                              count);
-    for (size_t i = 0; i < count; i++) {
-        const vodr_rgba *e = &table->entries[i];
-        if (e->a >> m->tf_bits || e->r > e->a || e->g > e->a || e->b > e->a)
-            return reference_fail(error, REFERENCE_INVALID,
-                                  "entry %zu of the table is %d %d %d %d, must be premultiplied, of %d bits a channel",
-                                  i, e->r, e->g, e->b, e->a, m->tf_bits);
-    }
-    return REFERENCE_OK;
-}
-
-/* Sections 2 and 6: what is refused. */
-static reference_status check_fixed(const reference *r, const vodr_machine *m, const uint16_t *map,
-                                    const vodr_table *table, const vodr_view *view, vodr_error *error)
-{
-    if (r->volume.type == REFERENCE_FLOAT32)
-        return reference_fail(error, REFERENCE_INVALID, "the machine's voxels are integers, not floats");
-    if (r->volume.whole_vox[0])
-        return reference_fail(error, REFERENCE_INVALID, "the machine draws a whole volume, not a part of one");
-    if (m->filter == VODR_FILTER_BSPLINE && r->volume.type != REFERENCE_UINT16)
-        return reference_fail(error, REFERENCE_INVALID,
-                              "filter=bspline takes coefficients of 16 bits, not voxels of another width");
-    if (r->volume.type == REFERENCE_UINT8 && !map && m->density_bits != 8)
-        return reference_fail(error, REFERENCE_INVALID, "density_bits is %d, must be 8 for 8-bit voxels without a map",
-                              m->density_bits);
-    for (int i = 0; map && r->volume.type == REFERENCE_UINT8 && i < 256; i++)
-        if (map[i] >> m->density_bits)
-            return reference_fail(error, REFERENCE_INVALID, "entry %d of the map is %d, must be below 2^%d", i, map[i],
-                                  m->density_bits);
-    if (vodr_machine_check(m, error) != VODR_OK || vodr_view_check(view, r->volume.dims_vox, error) != VODR_OK)
-        return REFERENCE_INVALID;
-    return check_table(table, m, error);
-}
-
-/* Packs pixels into a frame of its bits. */
-static reference_status make_frame(int32_t width_px, int32_t height_px, int32_t bits, vodr_frame *frame,
-                                   vodr_error *error)
-{
-    size_t bytes = (size_t)width_px * (size_t)height_px * (size_t)bits / 2;
-    *frame = (vodr_frame){width_px, height_px, bits, malloc(bytes), bytes};
-    if (frame->pixels)
-        return REFERENCE_OK;
-    *frame = (vodr_frame){0};
-    return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a frame of %zu bytes", bytes);
-}
-
-static void set_channel(vodr_frame *frame, size_t i, uint16_t value)
-{
-    if (frame->bits == 8)
-        ((uint8_t *)frame->pixels)[i] = (uint8_t)value;
-    else
-        ((uint16_t *)frame->pixels)[i] = value;
-}
-
-static reference_status draw_fixed(reference *r, const kernel_fixed *f, vodr_frame *frame, reference_stats *stats,
-                                   vodr_error *error)
-{
-    size_t count = (size_t)f->view.width_px * (size_t)f->view.height_px;
-    vodr_rgba *pixels = malloc(count * sizeof *pixels);
-    if (!pixels)
-        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu pixels", count);
-    reference_status status = r->ops->fixed(r->state, f, pixels, stats, error);
-    if (status == REFERENCE_OK)
-        status = make_frame(f->view.width_px, f->view.height_px, f->bits, frame, error);
-    for (size_t i = 0; status == REFERENCE_OK && i < count; i++) {
-        const uint16_t channels[4] = {pixels[i].r, pixels[i].g, pixels[i].b, pixels[i].a};
-        for (size_t c = 0; c < 4; c++)
-            set_channel(frame, 4 * i + c, channels[c]);
-    }
-    free(pixels);
-    return status;
-}
-
-reference_status reference_fixed(reference *r, const vodr_machine *m, const uint16_t *map, const vodr_table *table,
-                                 const vodr_view *view, vodr_frame *frame, reference_stats *stats, vodr_error *error)
-{
-    *frame = (vodr_frame){0};
-    *stats = (reference_stats){0};
-    reference_status status = check_fixed(r, m, map, table, view, error);
-    if (status != REFERENCE_OK)
-        return status;
-    double begin_ms = now_ms();
-    uint16_t identity[256];
-    for (int i = 0; i < 256; i++)
-        identity[i] = (uint16_t)i;
-    vodr_rgba *entries = malloc(table->count * sizeof *entries);
-    if (!entries)
-        return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for a table of %zu entries", table->count);
-    for (size_t i = 0; i < table->count; i++) {
-        const vodr_rgba *e = &table->entries[i];
-        entries[i] =
-            (vodr_rgba){convert_channel(e->r, m->tf_bits, m->fb_bits), convert_channel(e->g, m->tf_bits, m->fb_bits),
-                        convert_channel(e->b, m->tf_bits, m->fb_bits), convert_channel(e->a, m->tf_bits, m->fb_bits)};
-    }
-    kernel_fixed f = {.view = *view,
-                      .voxel_bytes = r->volume.type == REFERENCE_UINT8 ? 1 : 2,
-                      .density_bits = m->density_bits,
-                      .weight_bits = m->weight_bits,
-                      .guard_bits = m->guard_bits,
-                      .bits = m->fb_bits,
-                      .blend = m->blend,
-                      .filter = m->filter,
-                      .voxels = r->volume.voxels,
-                      .map = map ? map : identity,
-                      .table = entries};
-    memcpy(f.dims_vox, r->volume.dims_vox, sizeof f.dims_vox);
-    stats->prepare_ms = now_ms() - begin_ms;
-    status = draw_fixed(r, &f, frame, stats, error);
-    free(entries);
-    return status;
 }
 
 /* ---- floating point ---- */
@@ -390,9 +241,9 @@ static reference_status need_blocks(reference *r, const reference_march_job *job
     if (reference_is_cubic(k.filter)) {
         status = need_ranges(r, k, stats, error);
     } else {
-        const double begin_ms = now_ms();
+        const double begin_ms = reference_now_ms();
         status = blocks_make(&r->volume, k.edge_vox, &r->blocks, error);
-        stats->preprocess_ms += now_ms() - begin_ms;
+        stats->preprocess_ms += reference_now_ms() - begin_ms;
     }
     if (status != REFERENCE_OK)
         blocks_free(&r->blocks);
@@ -502,7 +353,7 @@ static reference_status march(reference *r, const reference_march_job *job, cons
         status = need_blocks(r, job, stats, error);
     if (status != REFERENCE_OK)
         return status;
-    const double begin_ms = now_ms();
+    const double begin_ms = reference_now_ms();
     void *table = convert_table(job);
     if (!table)
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for the tables of the frame");
@@ -527,7 +378,7 @@ static reference_status march(reference *r, const reference_march_job *job, cons
     m.frame.blocks = blocks_of(r, job);
     if (has_blocks(job))
         status = classify_blocks(r, job, &m.frame, error);
-    stats->prepare_ms = now_ms() - begin_ms;
+    stats->prepare_ms = reference_now_ms() - begin_ms;
     if (status == REFERENCE_OK)
         status = r->ops->march(r->state, &m, rgba, stats, error);
     free(table);
@@ -546,10 +397,10 @@ static reference_status march_turned(reference *r, const reference_march_job *jo
         return reference_fail(error, REFERENCE_NO_MEMORY, "no memory for %zu pixels", pixels);
     const kernel_order order = aligned_order_usual(&turned.camera);
     reference_status status = march(r, &turned, alignment, &order, picture, stats, error);
-    const double begin_ms = now_ms();
+    const double begin_ms = reference_now_ms();
     if (status == REFERENCE_OK)
         aligned_turn_back(&job->camera, &turned.camera, theta, picture, rgba);
-    stats->turn_ms = now_ms() - begin_ms;
+    stats->turn_ms = reference_now_ms() - begin_ms;
     stats->theta_deg = theta * 180 / acos(-1);
     free(picture);
     return status;
@@ -589,15 +440,4 @@ reference_status reference_show_stored(const reference_march_job *job, double *r
     part_show_stored(&table, job->numbers, rgba, count);
     free(entries);
     return REFERENCE_OK;
-}
-
-reference_status reference_quantise(const reference_camera *camera, const double *rgba, int32_t bits, vodr_frame *frame,
-                                    vodr_error *error)
-{
-    reference_status status = make_frame(camera->width_px, camera->height_px, bits, frame, error);
-    double full = bits == 16 ? 65535 : 255;
-    size_t channels = 4 * (size_t)camera->width_px * (size_t)camera->height_px;
-    for (size_t i = 0; status == REFERENCE_OK && i < channels; i++)
-        set_channel(frame, i, (uint16_t)floor(fmin(fmax(rgba[i], 0), 1) * full + 0.5));
-    return status;
 }
