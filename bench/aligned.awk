@@ -44,12 +44,12 @@ END {
     for (i = 1; i <= volumes; i++)
         for (w = 1; w <= count; w++) {
             key = order[i] " " ways[w]; none = order[i] " none"
-            if (!(key in mean)) continue
+            if (!(key in mean) || (cpu[order[i]] && ways[w] == "aligned, one copy")) continue # the CPU has but one
             on_cpu = cpu[order[i]]
             printf "| %s | %s | %s | %s | %s | %s | %s | %.3f | %d | %s |\n", order[i], ways[w], both(mean[key], mean_cpu[key], on_cpu ? 0 : 2),
                 both(worst[key], worst_cpu[key], on_cpu ? 0 : 2), both(best[key], best_cpu[key], on_cpu ? 0 : 2),
                 both(mean[none] / mean[key], mean_cpu[none] / mean_cpu[key], 2), both(worst[none] / worst[key], worst_cpu[none] / worst_cpu[key], 2),
-                speed[key], differs[key], db[key] == 999 || w == 1 ? "" : db[key]
+                speed[key], differs[key], db[key] + 0 == 999 || w == 1 ? "" : db[key]
         }
     print "\nCoefficients of B-splines, and one copy of them, milliseconds by the clock:\n"
     print "| device | voxels | prefilter | least | on the CPU, all threads | copy, least |"
