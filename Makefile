@@ -32,6 +32,10 @@ comma := ,
 MPICC    ?= $(shell command -v mpicc)
 MPI_FLAGS := $(if $(MPICC),$(patsubst -I%,-isystem %,$(shell $(MPICC) --showme:compile)))
 
+# IceT is a peer of compositing, measured where Debian's paraview-dev, or these two, has it (make table-balance).
+ICET     ?= $(firstword $(wildcard /usr/include/paraview-*/vtkicet/src/include))
+ICET_LIBRARIES ?= $(foreach part,MPI Core,$(firstword $(wildcard /usr/lib/*/libvtkIceT$(part)-pv*.so)))
+
 LIBRARIES := -lteem -lnifti2 -lznz -lpng -lz -ljansson -lcrypto -lm -pthread $(if $(COVER),--coverage)
 
 HW       := hw/parameters.txt hw/registers.txt
@@ -63,7 +67,7 @@ CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stan
 # The same of bench/aligned_frames.
 ALIGNED  := $(patsubst bench/record/cubic_frames,bench/record/aligned_frames,$(CUBIC))
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
-SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/aligned bench/cardinal bench/mip bench/model bench/peers-lib bench/reference bench/teem-lib .ci/run
+SCRIPTS  := $(wildcard scripts/* tests/*.sh tests/lib/*.sh) bench/aligned bench/balance bench/balance-lib bench/cardinal bench/cluster bench/mip bench/model bench/peers-lib bench/reference bench/teem-lib .ci/run
 
 # What a target starts itself runs on all cores, unless make was given -j.
 PARALLEL  = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -193,9 +197,9 @@ table-vodr: ## the paper's Table 1 beside ours, and what the paper leaves out
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_vodr
 	@$(BUILD)/bench/table_vodr
 
-table-balance: all ## how even the cluster's nodes are, beside the paper's, and write docs/table-balance.md again (minutes)
-	@scripts/tables $(BUILD) balance
-	@cat $(BUILD)/tables/balance
+table-balance: all $(if $(ICET),$(if $(MPICC),$(BUILD)/icet_frames)) ## how even the cluster's nodes are, beside the paper's, and write docs/table-balance.md again (minutes)
+	@scripts/tables $(BUILD) balance cluster
+	@cat $(BUILD)/tables/balance $(BUILD)/tables/cluster
 
 table-cycles: ## cycles a frame, divided or not; what counting them costs
 	@$(MAKE) -s $(PARALLEL) $(BUILD)/bench/table_cycles
@@ -320,6 +324,10 @@ $(BUILD)/bench/teem_frames: $(BUILD)/bench/record/teem_frames.o $(BUILD)/bench/l
 
 $(BUILD)/bench/reference_frames: $(BUILD)/bench/reference_frames.o $(BENCHLIB) $(BUILD)/libreference.a $(BUILD)/libhost.a $(BUILD)/libvectors.a $(BUILD)/librtl.a $(BUILD)/libvodr.a
 	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LIBRARIES) $(CUDA_LIBRARIES)
+
+# Beside vodr-mpi.so, which it loads.
+$(BUILD)/icet_frames: bench/icet/icet_frames.c $(BUILD)/bench/lib/stopwatch.o $(BUILD)/libcluster.a $(BUILD)/libreference.a $(BUILD)/libvodr.a $(BUILD)/vodr-mpi.so
+	$(COMPILE) $(MPI_FLAGS) -Ibench/lib -isystem $(ICET) -o $@ $(filter %.c %.o %.a,$^) $(ICET_LIBRARIES) $(shell $(MPICC) --showme:link) $(CUDA_LIBRARIES) -lm
 
 $(BUILD)/bench/texture_ceiling: $(BUILD)/bench/texture_ceiling.o
 	$(NVCC) -o $@ $^

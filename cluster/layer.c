@@ -84,23 +84,37 @@ void layers_march(layers *l, int32_t i, rectangle area, const double *rgba)
     }
 }
 
+/* Puts colours behind others. */
+static void lay_colours(float *restrict to, const float *restrict from, size_t count)
+{
+    for (size_t i = 0; i < count; i++, to += 4, from += 4) {
+        const float through = 1 - to[3];
+        for (int c = 0; c < 4; c++)
+            to[c] += through * from[c];
+    }
+}
+
 /* Puts a layer behind another, whose area holds its own. */
 static void lay(const layers *l, layer *front, const layer *back)
 {
     const size_t wide = width_of(back->area);
     const float *from = back->pixel;
-    for (int32_t y = back->area.y0; from && y < back->area.y1; y++) {
+    for (int32_t y = back->area.y0; from && y < back->area.y1; y++, from += wide * (l->mip ? 1 : 4)) {
         float *to = pixel_at(l, front, back->area.x0, y);
-        for (size_t x = 0; x < wide; x++, to += l->mip ? 1 : 4, from += l->mip ? 1 : 4) {
-            if (l->mip) {
-                *to = *from > *to ? *from : *to;
-                continue;
-            }
-            const float through = 1 - to[3];
-            for (int c = 0; c < 4; c++)
-                to[c] += through * from[c];
-        }
+        if (!l->mip)
+            lay_colours(to, from, wide);
+        for (size_t x = 0; l->mip && x < wide; x++)
+            to[x] = from[x] > to[x] ? from[x] : to[x];
     }
+}
+
+/* The same where nothing lies in front. */
+static void put_down(const layers *l, layer *empty, const layer *back)
+{
+    const size_t row = width_of(back->area) * (l->mip ? 1 : 4);
+    for (int32_t y = back->area.y0; back->pixel && y < back->area.y1; y++)
+        memcpy(pixel_at(l, empty, back->area.x0, y), back->pixel + (size_t)(y - back->area.y0) * row,
+               row * sizeof(float));
 }
 
 static int by_place(const void *a, const void *b)
@@ -125,7 +139,9 @@ static cluster_status join(layers *l, layers *out, int32_t begin, int32_t end, v
         return status;
     }
     cluster_status status = layers_add(out, first->first, l->layer[end - 1].end, area, error);
-    for (int32_t i = begin; status == CLUSTER_OK && i < end; i++)
+    if (status == CLUSTER_OK)
+        put_down(l, &out->layer[out->count - 1], first);
+    for (int32_t i = begin + 1; status == CLUSTER_OK && i < end; i++)
         lay(l, &out->layer[out->count - 1], &l->layer[i]);
     return status;
 }

@@ -84,8 +84,8 @@ static void put(writer *w, const void *data, size_t bytes)
     w->message->count += bytes;
 }
 
-/* Calls for each run of active pixels of an area: how many pixels lie before it since the last, and what it is. */
-static void put_runs(writer *w, const layer *from, head *h, bool pixels)
+/* Puts the runs of a layer's area: how many pixels lie before each since the last, and how many it has. */
+static void put_runs(writer *w, const layer *from, head *h)
 {
     const layers *l = w->layers;
     uint32_t run[2] = {0, 0};
@@ -93,14 +93,6 @@ static void put_runs(writer *w, const layer *from, head *h, bool pixels)
         const float *pixel = pixel_of(l, from, h->area.x0, y);
         for (int32_t x = h->area.x0; x < h->area.x1; x++, pixel += channels_of(l)) {
             const bool active = is_active(l, pixel);
-            if (pixels) {
-                uint16_t rounded[4];
-                for (size_t c = 0; active && is_16_bits(l) && c < 4; c++)
-                    rounded[c] = (uint16_t)(fminf(fmaxf(pixel[c], 0), 1) * 65535 + 0.5f);
-                if (active)
-                    put(w, is_16_bits(l) ? (const void *)rounded : pixel, pixel_bytes(l));
-                continue;
-            }
             if (active || run[1] == 0) {
                 run[active]++;
                 h->pixels += active;
@@ -112,9 +104,40 @@ static void put_runs(writer *w, const layer *from, head *h, bool pixels)
             run[1] = 0;
         }
     }
-    if (!pixels && run[1] > 0) {
+    if (run[1] > 0) {
         put(w, run, sizeof run);
         h->runs++;
+    }
+}
+
+/* Puts pixels that follow on one another. */
+static void put_pixels(writer *w, const float *pixel, size_t count)
+{
+    const layers *l = w->layers;
+    if (!is_16_bits(l)) {
+        put(w, pixel, count * pixel_bytes(l));
+        return;
+    }
+    for (size_t i = 0; i < 4 * count; i++) {
+        const uint16_t rounded = (uint16_t)(fminf(fmaxf(pixel[i], 0), 1) * 65535 + 0.5f);
+        put(w, &rounded, sizeof rounded);
+    }
+}
+
+/* Puts the pixels of the runs that were put at `place`. */
+static void put_active(writer *w, const layer *from, const head *h, size_t place)
+{
+    const size_t wide = (size_t)(h->area.x1 - h->area.x0);
+    size_t at = 0;
+    for (uint32_t i = 0; i < h->runs; i++, place += 2 * sizeof(uint32_t)) {
+        uint32_t run[2];
+        memcpy(run, (const char *)w->message->bytes + place, sizeof run);
+        at += run[0];
+        for (size_t left = run[1], now; left > 0; left -= now, at += now) { /* row by row */
+            const size_t x = at % wide;
+            now = wide - x < left ? wide - x : left;
+            put_pixels(w, pixel_of(w->layers, from, h->area.x0 + (int32_t)x, h->area.y0 + (int32_t)(at / wide)), now);
+        }
     }
 }
 
@@ -127,8 +150,8 @@ static bool put_layer(writer *w, const layer *from, int32_t y0, int32_t y1)
     const size_t begin = w->message->count;
     put(w, &h, sizeof h);
     if (area > 0) {
-        put_runs(w, from, &h, false);
-        put_runs(w, from, &h, true);
+        put_runs(w, from, &h);
+        put_active(w, from, &h, begin + sizeof h);
     }
     memcpy((char *)w->message->bytes + begin, &h, sizeof h);
     return true;
@@ -149,16 +172,17 @@ cluster_status layers_pack(const layers *l, int32_t y0, int32_t y1, node_message
 
 /* ---- the other way ---- */
 
-static void get_pixel(const layers *l, const char *from, float *to)
+static void get_pixels(const layers *l, const char *from, float *to, size_t count)
 {
-    uint16_t rounded[4];
     if (!is_16_bits(l)) {
-        memcpy(to, from, pixel_bytes(l));
+        memcpy(to, from, count * pixel_bytes(l));
         return;
     }
-    memcpy(rounded, from, sizeof rounded);
-    for (int c = 0; c < 4; c++)
-        to[c] = (float)rounded[c] * (1 / 65535.0f);
+    for (size_t i = 0; i < 4 * count; i++) {
+        uint16_t rounded;
+        memcpy(&rounded, from + i * sizeof rounded, sizeof rounded);
+        to[i] = (float)rounded * (1 / 65535.0f);
+    }
 }
 
 static void get_runs(const layers *l, const head *h, const char *runs, layer *to)
@@ -169,8 +193,9 @@ static void get_runs(const layers *l, const head *h, const char *runs, layer *to
         uint32_t run[2];
         memcpy(run, runs, sizeof run);
         place += run[0] * channels_of(l);
-        for (uint32_t n = 0; n < run[1]; n++, place += channels_of(l), pixel += pixel_bytes(l))
-            get_pixel(l, pixel, place);
+        get_pixels(l, pixel, place, run[1]);
+        place += run[1] * channels_of(l);
+        pixel += run[1] * pixel_bytes(l);
     }
 }
 

@@ -63,6 +63,27 @@ static void bad_volumes(void **state)
     case_free(&c);
 }
 
+static void bad_boxes(void **state)
+{
+    (void)state;
+    test_case c;
+    assert_true(case_make(SEED, &c));
+    for (int axis = 0; axis < 3; axis++) {
+        for (int a = 0; a < 3; a++) {
+            c.input.lo_vox[a] = 0;
+            c.input.hi_vox[a] = c.input.dims_vox[a];
+        }
+        c.input.lo_vox[axis] = c.input.hi_vox[axis];
+        refuses_everywhere(&c, &c.machine, "is to be drawn along");
+        c.input.lo_vox[axis] = -1;
+        refuses_everywhere(&c, &c.machine, "is to be drawn along");
+        c.input.lo_vox[axis] = 0;
+        c.input.hi_vox[axis]++;
+        refuses_everywhere(&c, &c.machine, "is to be drawn along");
+    }
+    case_free(&c);
+}
+
 static void bad_tables(void **state)
 {
     (void)state;
@@ -232,6 +253,34 @@ static void half_observers(void **state)
     case_free(&c);
 }
 
+/* A box of a volume is drawn alike by all, cycles included. */
+static void boxes(void **state)
+{
+    (void)state;
+    enum { CASES = 60 };
+    static const vodr_path paths[] = {VODR_PATH_FAST, VODR_PATH_BLOCKS, VODR_PATH_CLOCKED};
+    rng r = {23};
+    uint64_t fragments = 0;
+    for (uint64_t seed = 0; seed < CASES; seed++) {
+        test_case c;
+        outcome o[3];
+        assert_true(case_make(seed, &c));
+        for (int a = 0; a < 3; a++) {
+            c.input.lo_vox[a] = (int32_t)rng_int(&r, 0, c.input.dims_vox[a] - 1);
+            c.input.hi_vox[a] = (int32_t)rng_int(&r, c.input.lo_vox[a] + 1, c.input.dims_vox[a]);
+        }
+        for (int i = 0; i < 3; i++)
+            outcome_draw(&c, &c.machine, &(vodr_options){.threads = 1, .path = paths[i], .cycles = true}, &o[i]);
+        for (int i = 1; i < 3; i++)
+            assert_true(outcome_same(stderr, &o[0], &o[i]));
+        fragments += o[0].counters.fragments;
+        for (int i = 0; i < 3; i++)
+            outcome_free(&o[i]);
+        case_free(&c);
+    }
+    assert_true(fragments > 1000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -242,6 +291,8 @@ int main(void)
         cmocka_unit_test(threads_and_instructions),
         cmocka_unit_test(long_rows),
         cmocka_unit_test(half_observers),
+        cmocka_unit_test(boxes),
+        cmocka_unit_test(bad_boxes),
     };
     return cmocka_run_group_tests_name("render", tests, NULL, NULL);
 }

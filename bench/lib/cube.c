@@ -38,7 +38,7 @@ host_status cube_make(cube *c, host_error *error)
     fill_voxels(c->voxels);
     transfer_table(&ramp, 0, 255, DENSITY_BITS, TF_BITS, 1, false, c->entries);
     transfer_close(&ramp);
-    c->volume = (vodr_volume){{CUBE_VOX, CUBE_VOX, CUBE_VOX}, 1, c->voxels, NULL};
+    c->volume = (vodr_volume){.dims_vox = {CUBE_VOX, CUBE_VOX, CUBE_VOX}, .voxel_bytes = 1, .voxels = c->voxels};
     c->table = (vodr_table){c->entries, entries};
     return HOST_OK;
 }
