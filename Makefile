@@ -112,14 +112,14 @@ cosim-long: ## whole frames of 256^3 in Verilog beside C, a million transactions
 	@tests/cosim.sh --long $(BUILD)/vodr
 	@scripts/cosim $(BUILD) 256
 
-synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and write docs/table-synthesis.md again (half an hour)
+synth: ## synthesise the Verilog with Yosys, place what an iCE40 holds, and write docs/table-synthesis.md again (a quarter of an hour)
 	@scripts/deps synth
 	@$(MAKE) -s $(BUILD)/gen/vodr_hw.vh
 	@scripts/synth $(BUILD)
 	@scripts/tables $(BUILD) synthesis
 	@cat $(BUILD)/tables/synthesis
 
-coverage: $(BUILD)/gen/vodr_hw.vh ## what the tests reach, and docs/table-coverage.md again; fails below what is asked (half an hour)
+coverage: $(BUILD)/gen/vodr_hw.vh ## what the tests reach, and docs/table-coverage.md again; fails below what is asked (a quarter of an hour)
 	@scripts/deps coverage
 	@$(MAKE) -s $(PARALLEL) BUILD=$(BUILD)/coverage CFLAGS=-O1 COVER='-O0 --coverage -fprofile-update=atomic' NVCC= \
 	    $(addprefix $(BUILD)/coverage/,vodr tests/digest tests/lockstep/lockstep) \
