@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "layout.h"
+#include "voxels.h"
 
 /* ---- weights ---- */
 
@@ -105,4 +106,11 @@ void filter_range(const vodr_machine *m, int32_t *min, int32_t *max)
     }
     *min = round_density(lo, drop_bits, most);
     *max = round_density(hi, drop_bits, most);
+}
+
+void filter_bounds(const vodr_machine *m, const vodr_volume *volume, const vox_box *box, int32_t *min, int32_t *max)
+{
+    const vox_box reach = voxels_reach(volume->dims_vox, box, filter_border_vox(m));
+    voxels_range(volume, stored_bits(m), &reach, min, max);
+    filter_range(m, min, max);
 }

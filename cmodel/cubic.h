@@ -3,6 +3,7 @@
 #ifndef VODR_CUBIC_H
 #define VODR_CUBIC_H
 
+#include "view.h"
 #include "vodr.h"
 
 enum { CUBIC_TAPS = 4, CUBIC_VOXELS = 64, CUBIC_MORE_BITS = 2 /* of a weight, beyond weight_bits */ };
@@ -30,5 +31,8 @@ int32_t cubic_value(const cubic *c, const int32_t share[3], const int32_t voxels
 
 /* Turns a range of what texture memory holds into bounds of the densities that any filter makes of it. */
 void filter_range(const vodr_machine *m, int32_t *min, int32_t *max);
+
+/* Bounds of the densities that the machine's filter makes of samples inside a box of the volume. */
+void filter_bounds(const vodr_machine *m, const vodr_volume *volume, const vox_box *box, int32_t *min, int32_t *max);
 
 #endif

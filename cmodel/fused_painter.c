@@ -7,10 +7,8 @@
 
 #include "cubic.h"
 #include "error.h"
-#include "layout.h"
 #include "rasterizer.h"
 #include "slice_generator.h"
-#include "voxels.h"
 
 vodr_status fused_painter_start(fused_painter *p, const fused_scene *scene, vodr_error *error)
 {
@@ -135,11 +133,9 @@ static bool transparent(const fused_scene *s, int32_t min, int32_t max)
 static bool shows(const fused_scene *s, const vox_box *box)
 {
     int32_t min, max;
-    const vox_box reach = voxels_reach(s->volume->dims_vox, box, filter_border_vox(s->machine));
     if (!s->droppable)
         return true;
-    voxels_range(s->volume, stored_bits(s->machine), &reach, &min, &max);
-    filter_range(s->machine, &min, &max);
+    filter_bounds(s->machine, s->volume, box, &min, &max);
     return !transparent(s, min, max);
 }
 

@@ -302,7 +302,7 @@ static vodr_status check_volume(const vodr_volume *v, const vodr_machine *m, vod
     for (int c = 0; c < 3; c++)
         if (drawn.lo[c] < 0 || drawn.hi[c] <= drawn.lo[c] || drawn.hi[c] > v->dims_vox[c])
             return vodr_fail(error, VODR_INVALID, "%d to %d is to be drawn along %c but must lie within 0 to %d",
-                             drawn.lo[c], drawn.hi[c], "xyz"[c], v -> dims_vox[c]);
+                             drawn.lo[c], drawn.hi[c], 'x' + c, v->dims_vox[c]);
     if (v->voxel_bytes != 1 && v->voxel_bytes != 2)
         return vodr_fail(error, VODR_INVALID, "voxel_bytes is %d but must be 1 or 2", v->voxel_bytes);
     if (m->filter == VODR_FILTER_BSPLINE && v->voxel_bytes != 2)

@@ -118,10 +118,8 @@ static void find_empty(volume_divider *d, const vodr_machine *m, const vodr_volu
         for (i[1] = 0; i[1] < d->bricks[1]; i[1]++)
             for (i[0] = 0; i[0] < d->bricks[0]; i[0]++) {
                 vox_box box = brick_box(d, i, i);
-                vox_box reach = voxels_reach(volume->dims_vox, &box, filter_border_vox(m));
                 int32_t min, max;
-                voxels_range(volume, stored_bits(m), &reach, &min, &max);
-                filter_range(m, &min, &max);
+                filter_bounds(m, volume, &box, &min, &max);
                 bool empty = transparent_to[m->blend == VODR_BLEND_MIP ? 0 : min] >= max;
                 d->empty[brick_number(d, i)] = empty;
                 d->empty_bricks += empty;
