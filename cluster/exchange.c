@@ -9,15 +9,10 @@
 
 enum { FILE_ITSELF = -1 };
 
-/* A box of voxels, half-open. */
-typedef struct vox_box {
-    int32_t lo[3], hi[3];
-} vox_box;
-
 /* What a new box gets from an old one, or from the file. */
 typedef struct piece {
     int32_t to, from; /* numbers of bricks */
-    vox_box box;
+    box box;
 } piece;
 
 typedef struct plan {
@@ -25,24 +20,14 @@ typedef struct plan {
     const bricks *old;
     piece *piece; /* owned */
     size_t count, room;
-    vox_box *left, *next; /* owned: what of a box is still to be found, and what is left of that */
+    box *left, *next; /* owned: what of a box is still to be found, and what is left of that */
     size_t lefts, nexts, room_left, room_next;
     bool full; /* memory is out */
 } plan;
 
-static bool is_empty(const vox_box *b)
+static box common(const box *a, const box *b)
 {
-    return b->lo[0] >= b->hi[0] || b->lo[1] >= b->hi[1] || b->lo[2] >= b->hi[2];
-}
-
-static size_t size_of(const vox_box *b)
-{
-    return (size_t)(b->hi[0] - b->lo[0]) * (size_t)(b->hi[1] - b->lo[1]) * (size_t)(b->hi[2] - b->lo[2]);
-}
-
-static vox_box common(const vox_box *a, const vox_box *b)
-{
-    vox_box c;
+    box c;
     for (int i = 0; i < 3; i++) {
         c.lo[i] = a->lo[i] > b->lo[i] ? a->lo[i] : b->lo[i];
         c.hi[i] = a->hi[i] < b->hi[i] ? a->hi[i] : b->hi[i];
@@ -50,9 +35,9 @@ static vox_box common(const vox_box *a, const vox_box *b)
     return c;
 }
 
-static vox_box held_of(const cluster *c, const brick *b)
+static box held_of(const cluster *c, const brick *b)
 {
-    vox_box held;
+    box held;
     bricks_border(c, b, held.lo, held.hi);
     return held;
 }
@@ -70,9 +55,9 @@ static bool grow(void **list, size_t count, size_t *room, size_t size)
     return true;
 }
 
-static void keep(plan *p, const vox_box *b)
+static void keep(plan *p, const box *b)
 {
-    if (is_empty(b))
+    if (box_is_empty(b))
         return;
     if (grow((void **)&p->next, p->nexts, &p->room_next, sizeof *p->next))
         p->next[p->nexts++] = *b;
@@ -80,7 +65,7 @@ static void keep(plan *p, const vox_box *b)
         p->full = true;
 }
 
-static void add_piece(plan *p, int32_t to, int32_t from, const vox_box *b)
+static void add_piece(plan *p, int32_t to, int32_t from, const box *b)
 {
     if (grow((void **)&p->piece, p->count, &p->room, sizeof *p->piece))
         p->piece[p->count++] = (piece){to, from, *b};
@@ -89,10 +74,10 @@ static void add_piece(plan *p, int32_t to, int32_t from, const vox_box *b)
 }
 
 /* Keeps what is left of a box outside `part` of it, as up to six boxes. */
-static void keep_rest(plan *p, vox_box b, const vox_box *part)
+static void keep_rest(plan *p, box b, const box *part)
 {
     for (int a = 0; a < 3; a++) {
-        vox_box side = b;
+        box side = b;
         side.hi[a] = part->lo[a];
         keep(p, &side);
         side = b;
@@ -106,18 +91,18 @@ static void keep_rest(plan *p, vox_box b, const vox_box *part)
 /* Takes what an old box has of what is still to be found. */
 static void take_from(plan *p, int32_t to, int32_t from)
 {
-    const vox_box held = held_of(p->cluster, &p->old->brick[from]);
+    const box held = held_of(p->cluster, &p->old->brick[from]);
     p->nexts = 0;
     for (size_t i = 0; i < p->lefts; i++) {
-        const vox_box part = common(&p->left[i], &held);
-        if (is_empty(&part)) {
+        const box part = common(&p->left[i], &held);
+        if (box_is_empty(&part)) {
             keep(p, &p->left[i]);
             continue;
         }
         add_piece(p, to, from, &part);
         keep_rest(p, p->left[i], &part);
     }
-    vox_box *const left = p->left;
+    box *const left = p->left;
     const size_t room = p->room_left;
     p->left = p->next;
     p->lefts = p->nexts;
@@ -130,7 +115,7 @@ static void take_from(plan *p, int32_t to, int32_t from)
 static void plan_brick(plan *p, int32_t to)
 {
     const brick *b = &p->cluster->bricks.brick[to];
-    const vox_box all = held_of(p->cluster, b);
+    const box all = held_of(p->cluster, b);
     p->nexts = 0;
     keep(p, &all);
     p->lefts = 0;
@@ -156,7 +141,7 @@ static void make_plan(plan *p)
 /* ---- voxels ---- */
 
 /* Copies a box of voxels between volumes, or a volume and a row of bytes (NULL). */
-static void copy(const reference_volume *from, const reference_volume *to, const vox_box *b, size_t voxel, char *bytes)
+static void copy(const reference_volume *from, const reference_volume *to, const box *b, size_t voxel, char *bytes)
 {
     const size_t row = (size_t)(b->hi[0] - b->lo[0]) * voxel;
     for (int32_t z = b->lo[2]; z < b->hi[2]; z++)
@@ -190,7 +175,7 @@ static cluster_status make_room(cluster *c, const bricks *old, vodr_error *error
         brick *b = &c->bricks.brick[i];
         if (b->owner == KD_NOBODY || !cluster_holds(c, b->owner) || bricks_stay(old, b))
             continue;
-        const vox_box held = held_of(c, b);
+        const box held = held_of(c, b);
         b->made = malloc(b->held_bytes);
         if (!b->made)
             return cluster_no_memory(error);
@@ -235,7 +220,7 @@ static cluster_status fill_own(const plan *p, vodr_error *error)
 static cluster_status expect(const plan *p, vodr_error *error)
 {
     const cluster *c = p->cluster;
-    vox_box all = {{INT32_MAX, INT32_MAX, INT32_MAX}, {0, 0, 0}};
+    box all = {{INT32_MAX, INT32_MAX, INT32_MAX}, {0, 0, 0}};
     for (size_t i = 0; i < p->count; i++) {
         const piece *n = &p->piece[i];
         if (n->from != FILE_ITSELF || !cluster_holds(c, owner_of(&c->bricks, n->to)))
@@ -245,7 +230,7 @@ static cluster_status expect(const plan *p, vodr_error *error)
             all.hi[a] = n->box.hi[a] > all.hi[a] ? n->box.hi[a] : all.hi[a];
         }
     }
-    if (is_empty(&all) || c->options.memory_bytes)
+    if (box_is_empty(&all) || c->options.memory_bytes)
         return CLUSTER_OK;
     return c->source.expect(c->source.context, all.lo, all.hi, error);
 }
@@ -259,7 +244,7 @@ static size_t bytes_between(const plan *p, int32_t from, int32_t to)
     for (size_t i = 0; i < p->count; i++) {
         const piece *n = &p->piece[i];
         if (n->from != FILE_ITSELF && owner_of(p->old, n->from) == from && owner_of(&p->cluster->bricks, n->to) == to)
-            voxels += size_of(&n->box);
+            voxels += (size_t)box_size(&n->box);
     }
     return voxels * (size_t)p->cluster->source.voxel_bytes;
 }
@@ -279,7 +264,7 @@ static void go_over(const plan *p, int32_t peer, bool sends, char *bytes)
             copy(&p->old->brick[n->from].volume, NULL, &n->box, voxel, bytes);
         else
             copy(NULL, &c->bricks.brick[n->to].volume, &n->box, voxel, bytes);
-        bytes += size_of(&n->box) * voxel;
+        bytes += (size_t)box_size(&n->box) * voxel;
     }
 }
 
@@ -331,7 +316,7 @@ static void tell(const plan *p, cluster_change *change)
     *change = (cluster_change){0};
     for (size_t i = 0; i < p->count; i++) {
         const piece *n = &p->piece[i];
-        const uint64_t bytes = size_of(&n->box) * voxel;
+        const uint64_t bytes = (uint64_t)box_size(&n->box) * voxel;
         if (n->from == FILE_ITSELF)
             change->read_bytes += bytes;
         else if (owner_of(p->old, n->from) != owner_of(&p->cluster->bricks, n->to))

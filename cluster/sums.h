@@ -4,7 +4,7 @@
 
 #include "cluster.h"
 
-/* A box of sub-volumes, half-open. */
+/* A box of sub-volumes, or of voxels, half-open. */
 typedef struct box {
     int32_t lo[3], hi[3];
 } box;
@@ -37,7 +37,7 @@ static inline bool box_is_empty(const box *b)
     return b->hi[0] <= b->lo[0] || b->hi[1] <= b->lo[1] || b->hi[2] <= b->lo[2];
 }
 
-/* Sub-volumes of a box. */
+/* How many of them. */
 static inline int64_t box_size(const box *b)
 {
     return box_is_empty(b) ? 0 : (int64_t)(b->hi[0] - b->lo[0]) * (b->hi[1] - b->lo[1]) * (b->hi[2] - b->lo[2]);
