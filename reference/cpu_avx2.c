@@ -5,5 +5,6 @@
 #define LANES_OF_FLOAT
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_avx2, avx2, true, KERNEL_CELLS, KERNEL_LINEAR);
+DEFINE_ONE(avx2, KERNEL_LINEAR, KERNEL_SEARCH)
+DEFINE_MARCH(cpu_kernels_avx2, avx2, true, KERNEL_CELLS, avx2_KERNEL_SEARCH);
 #endif

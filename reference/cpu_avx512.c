@@ -6,5 +6,6 @@
 #define LANES_OF_FLOAT
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_avx512, avx512, true, KERNEL_CELLS, KERNEL_LINEAR);
+DEFINE_ONE(avx512, KERNEL_LINEAR, KERNEL_SEARCH)
+DEFINE_MARCH(cpu_kernels_avx512, avx512, true, KERNEL_CELLS, avx512_KERNEL_SEARCH);
 #endif

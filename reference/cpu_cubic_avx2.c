@@ -7,6 +7,6 @@
 #include "cpu_march_kernels.h"
 #include "hull_rows.h"
 
-DEFINE_MARCH(cpu_cubic_avx2, avx2, false, KERNEL_CUBIC, KERNEL_CUBIC);
+DEFINE_MARCH(cpu_cubic_avx2, avx2, false, KERNEL_CUBIC, NULL);
 const hull_rows hull_rows_avx2 = {hull_ranges, rival_ranges, find_extremes};
 #endif

@@ -3,4 +3,4 @@
 #include "cpu_cubic.h"
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_cubic_double, portable, false, KERNEL_CUBIC, KERNEL_CUBIC);
+DEFINE_MARCH(cpu_cubic_double, portable, false, KERNEL_CUBIC, NULL);

@@ -6,7 +6,7 @@
 #include "cpu_march_kernels.h"
 #include "hull_rows.h"
 
-DEFINE_MARCH(cpu_cubic_float, portable, false, KERNEL_CUBIC, KERNEL_CUBIC);
+DEFINE_MARCH(cpu_cubic_float, portable, false, KERNEL_CUBIC, NULL);
 const hull_rows hull_rows_portable = {hull_ranges, rival_ranges, find_extremes};
 
 const cpu_kernels *cpu_cubic_best(vodr_simd simd, const hull_rows **rows)

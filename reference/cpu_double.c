@@ -2,4 +2,5 @@
 #define REAL double
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_double, portable, false, NOT_CELLS, NOT_CELLS);
+DEFINE_ONE(portable, NOT_CELLS, KERNEL_SEARCH)
+DEFINE_MARCH(cpu_kernels_double, portable, false, NOT_CELLS, portable_KERNEL_SEARCH);

@@ -3,7 +3,8 @@
 #define LANES_OF_FLOAT
 #include "cpu_march_kernels.h"
 
-DEFINE_MARCH(cpu_kernels_float, portable, false, NOT_CELLS, NOT_CELLS);
+DEFINE_ONE(portable, NOT_CELLS, KERNEL_SEARCH)
+DEFINE_MARCH(cpu_kernels_float, portable, false, NOT_CELLS, portable_KERNEL_SEARCH);
 
 const cpu_kernels *cpu_kernels_best(vodr_simd simd)
 {

@@ -69,18 +69,15 @@ KERNEL void march_rows(const kernel_frame *f, int32_t j0, int32_t j1, double *rg
         march_rows(f, j0, j1, rgba, samples, mode, filter);                                                            \
     }
 
-/* The kernels of an instruction set, and the table of them. A search reads too little for cells to be packed. */
-#define DEFINE_MARCH(table, set, cells, filter, scattered)                                                             \
+/* The kernels of an instruction set, and the table of them. `search` is defined beside it: it reads too little for
+ * cells to be packed, and there is none of a cubic (NULL). */
+#define DEFINE_MARCH(table, set, cells, filter, search)                                                                \
     DEFINE_ONE(set, filter, KERNEL_OVER)                                                                               \
     DEFINE_ONE(set, filter, KERNEL_LIT)                                                                                \
     DEFINE_ONE(set, filter, KERNEL_MIP)                                                                                \
     DEFINE_ONE(set, filter, KERNEL_LEAP)                                                                               \
-    DEFINE_ONE(set, scattered, KERNEL_SEARCH)                                                                          \
     const cpu_kernels table = {                                                                                        \
-        #set,                                                                                                          \
-        cells,                                                                                                         \
-        {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP, set##_KERNEL_LEAP, set##_KERNEL_SEARCH},               \
-        READS_QUADS}
+        #set, cells, {set##_KERNEL_OVER, set##_KERNEL_LIT, set##_KERNEL_MIP, set##_KERNEL_LEAP, search}, READS_QUADS}
 
 #if defined(LANES_OF_FLOAT) && defined(__AVX512F__)
 #define READS_QUADS true

@@ -79,14 +79,7 @@ template <kernel_mode mode, kernel_skip skip> static march_function *by_filter(c
 {
     switch (f->filter) {
     case KERNEL_NEAREST: return march_kernel<mode, KERNEL_NEAREST, skip, ANY_TYPE>;
-    case KERNEL_LINEAR:
-        if constexpr (mode == KERNEL_SEARCH) {
-            if (f->volume.type == REFERENCE_UINT8)
-                return march_kernel<mode, KERNEL_LINEAR, skip, REFERENCE_UINT8>;
-            if (f->volume.type == REFERENCE_UINT16)
-                return march_kernel<mode, KERNEL_LINEAR, skip, REFERENCE_UINT16>;
-        }
-        return march_kernel<mode, KERNEL_LINEAR, skip, ANY_TYPE>;
+    case KERNEL_LINEAR: return march_kernel<mode, KERNEL_LINEAR, skip, ANY_TYPE>;
     case KERNEL_CELLS:
         return f->volume.type == REFERENCE_UINT8 ? march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT8>
                                                  : march_kernel<mode, KERNEL_CELLS, skip, REFERENCE_UINT16>;
@@ -102,6 +95,20 @@ template <kernel_mode mode> static march_function *by_skip(const kernel_frame *f
     return f->skip == KERNEL_SKIP_NONE ? by_filter<mode, KERNEL_SKIP_NONE>(f) : by_filter<mode, KERNEL_SKIP_EMPTY>(f);
 }
 
+/* Of neither cells, as a search reads too little for them to be packed, nor cubics. */
+static march_function *by_search(const kernel_frame *f)
+{
+    if (f->filter == KERNEL_NEAREST)
+        return march_kernel<KERNEL_SEARCH, KERNEL_NEAREST, KERNEL_SKIP_NONE, ANY_TYPE>;
+    if (f->filter == KERNEL_TEXTURE)
+        return march_kernel<KERNEL_SEARCH, KERNEL_TEXTURE, KERNEL_SKIP_NONE, ANY_TYPE>;
+    switch (f->volume.type) {
+    case REFERENCE_UINT8: return march_kernel<KERNEL_SEARCH, KERNEL_LINEAR, KERNEL_SKIP_NONE, REFERENCE_UINT8>;
+    case REFERENCE_UINT16: return march_kernel<KERNEL_SEARCH, KERNEL_LINEAR, KERNEL_SKIP_NONE, REFERENCE_UINT16>;
+    default: return march_kernel<KERNEL_SEARCH, KERNEL_LINEAR, KERNEL_SKIP_NONE, ANY_TYPE>;
+    }
+}
+
 static march_function *march_variant(kernel_mode mode, const kernel_frame *f)
 {
     switch (mode) {
@@ -109,7 +116,7 @@ static march_function *march_variant(kernel_mode mode, const kernel_frame *f)
     case KERNEL_LIT: return by_skip<KERNEL_LIT>(f);
     case KERNEL_MIP: return by_filter<KERNEL_MIP, KERNEL_SKIP_NONE>(f);
     case KERNEL_LEAP: return by_filter<KERNEL_LEAP, KERNEL_SKIP_NONE>(f);
-    default: return by_filter<KERNEL_SEARCH, KERNEL_SKIP_NONE>(f);
+    default: return by_search(f);
     }
 }
 
