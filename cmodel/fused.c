@@ -17,6 +17,7 @@ typedef struct fused {
     const vodr_options *options;
     int32_t threads;
     int32_t tasks_done;   /* of the calling thread's two */
+    double told;          /* the share that was told last */
     atomic_int waiting;   /* threads without a band */
     pthread_mutex_t lock; /* over what follows */
     pthread_cond_t changed;
@@ -78,11 +79,15 @@ static void fail(fused *f, vodr_status status, const vodr_error *error)
     }
 }
 
-/* Told of the calling thread's own progress, in one of its two tasks; all threads go through the same bricks. */
-static void report(const fused *f, double done)
+/* Told of the calling thread's own progress, in one of its two tasks; all threads go through the same bricks. A band
+ * that another thread gives away may be less far than the last: nothing is told then, as progress never falls. */
+static void report(fused *f, double done)
 {
-    if (f->options->progress)
-        f->options->progress(f->options->progress_context, (f->tasks_done + done) / 2);
+    const double all = (f->tasks_done + done) / 2;
+    if (!f->options->progress || all < f->told)
+        return;
+    f->told = all;
+    f->options->progress(f->options->progress_context, all);
 }
 
 /* Rows that nobody has, or rows that another thread gives away; false when there will be none. Holds the lock. */

@@ -231,7 +231,7 @@ typedef struct vodr_options {
     vodr_path path;
     vodr_simd simd;
     bool cycles; /* count cycles too; those of several pipelines are clocked, whatever the path, and take long */
-    /* Called now and then from the calling thread with the done share, 0 to 1; NULL for silence. */
+    /* Called now and then from the calling thread with the done share, 0 to 1, which never falls; NULL for silence. */
     void (*progress)(void *context, double done);
     void *progress_context;
     const vodr_observer *observer; /* NULL: nobody */
