@@ -54,16 +54,15 @@ BENCHLIB := $(patsubst %.c,$(BUILD)/%.o,$(wildcard bench/lib/*.c))
 TESTS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*.c))
 REFERENCE_TESTS := $(filter $(BUILD)/tests/test_reference% $(BUILD)/tests/test_cluster $(BUILD)/tests/test_gpu_record,$(TESTS))
 MIP_CASES := $(BUILD)/bench/record/mip_case.o $(BUILD)/bench/lib/synthetic.o # cases of the maximum are the record's
-BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
+BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c)) $(addprefix $(BUILD)/bench/,gpu_record mip_frames cubic_frames aligned_frames)
+# Random cases, as the tests draw them.
+CASES    := host/camera host/host host/spline tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
 # What bench/gpu_record is made of: nothing that needs more than a C library, so that it builds beside any card.
-RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch \
-            host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume tests/lib/outcome
+RECORD   := bench/record/gpu_record bench/record/$(if $(NVCC),baseline,baseline_none) bench/lib/stopwatch tests/lib/outcome $(CASES)
 # The same of bench/mip_frames.
-MIP      := bench/record/mip_frames bench/record/mip_case bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch host/camera host/host \
-            tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
+MIP      := bench/record/mip_frames bench/record/mip_case bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch $(CASES)
 # The same of bench/cubic_frames.
-CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch \
-            host/camera host/host tests/lib/cases tests/lib/case_table tests/lib/case_view tests/lib/case_volume
+CUBIC    := bench/record/cubic_frames bench/record/cubic_cases bench/record/stand_in bench/lib/enlarge bench/lib/stopwatch $(CASES)
 # The same of bench/aligned_frames.
 ALIGNED  := $(patsubst bench/record/cubic_frames,bench/record/aligned_frames,$(CUBIC))
 SOURCES  := $(filter-out build/%,$(wildcard */*.[ch] */*/*.[ch] rtl/*.cpp))
