@@ -18,6 +18,7 @@ KERNEL bool tile_pixel(const kernel_frame *f, int32_t i, int32_t j, int32_t j1, 
 KERNEL packet tile_rays(const kernel_frame *f, kernel_filter filter, int32_t i, int32_t j, int32_t j1)
 {
     packet rays;
+    rays.boxed = f->part.boxed;
     for (int a = 0; a < 3; a++)
         rays.origin[a] = (REAL)f->part.origin_vox[a];
     for (int l = 0; l < LANES; l++) {

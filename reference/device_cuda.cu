@@ -496,7 +496,8 @@ static reference_status take_volume(cuda_state *s, frame_memory *m, kernel_mode 
         return a->wanted ? take_copy(s, a, &f->volume, stats, error) : REFERENCE_OK;
     }
     TRY_STATUS(f->filter == KERNEL_TEXTURE ? need_texture(s, error) : need_linear(s, error));
-    if (f->filter == KERNEL_LINEAR && mode != KERNEL_SEARCH) { /* which reads too little for cells to be packed */
+    /* A search reads too little for cells to be packed; a box is drawn without. */
+    if (f->filter == KERNEL_LINEAR && mode != KERNEL_SEARCH && !f->part.boxed) {
         TRY_STATUS(want_cells(s, stats, error));
         f->filter = s->cells ? KERNEL_CELLS : KERNEL_LINEAR;
     }

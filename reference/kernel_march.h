@@ -106,9 +106,12 @@ KERNEL void march_batch(const kernel_frame *f, const march_lane *lane, const loo
         value[k] = sample_on(&f->volume, type, filter, p[k], shows[k]);
     }
     for (int k = 0; k < batch; k++) {
-        mask on = all ? shows[k] : shows[k] & (s->n + k < s->end);
-        if (looks && !any_lane(on))
-            continue;
+        mask on = all ? s->live : s->live & (s->n + k < s->end); /* a batch may end a ray */
+        if (looks) {
+            on = on & shows[k];
+            if (!any_lane(on))
+                continue;
+        }
         out->samples = out->samples + pick_whole(on, spread_whole(1), spread_whole(0));
         if (mode == KERNEL_MIP) {
             real most = larger(value[k], s->greatest);

@@ -7,6 +7,7 @@
 /* The rays of kernel_ray.h, a lane each, at places of the filter in the whole volume; past its count a lane rests. */
 typedef struct packet {
     real start[3], step[3];
+    bool boxed;   /* as of kernel_part; where not, skipped and origin are zero */
     real skipped; /* as of kernel_ray */
     whole count;
     whole first;    /* as of kernel_ray */
@@ -17,9 +18,12 @@ typedef struct packet {
  * is taken off it for the part's origin leaves no rest: a part's sample is the whole's to the bit. */
 KERNEL void place_of(const packet *rays, real n, real place[3])
 {
-    const real at = n + rays->skipped;
-    for (int a = 0; a < 3; a++)
-        place[a] = rays->start[a] + at * rays->step[a] - rays->origin[a];
+    const real at = rays->boxed ? n + rays->skipped : n;
+    for (int a = 0; a < 3; a++) {
+        place[a] = rays->start[a] + at * rays->step[a];
+        if (rays->boxed)
+            place[a] = place[a] - rays->origin[a];
+    }
 }
 
 /* Where the rays of a packet are: all at the same of their samples, so that what they read lies together. */

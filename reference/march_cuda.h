@@ -56,6 +56,7 @@ static __global__ void __launch_bounds__(threads_of(mode), mode == KERNEL_SEARCH
     if (inside)
         ray = ray_make(&f, x, y);
     packet rays;
+    rays.boxed = filter != KERNEL_CELLS && f.part.boxed; /* cells are of whole frames, which are faster so */
     for (int a = 0; a < 3; a++) {
         rays.start[a] = (float)(ray.start[a] + place_shift(filter));
         rays.step[a] = (float)ray.step[a];
