@@ -36,7 +36,8 @@ KERNEL mask cubic_raises(const kernel_frame *f, const real place[3], real greate
     return to_real(code) * (REAL)f->cells.step + (REAL)f->cells.base > greatest;
 }
 
-/* sample_cubic(): the value at places of the lanes `on`; what the others get means nothing. */
+/* sample_cubic(): the value at places of the lanes `on`; what the others get means nothing. cubic_ask(): asks for what
+ * cubic_shows() will read at places, where that gains anything. */
 #if defined(LANES_OF_FLOAT)
 #include "lanes_cpu_cubic.h"
 #else
@@ -105,6 +106,11 @@ KERNEL real sample_cubic(const kernel_volume *v, reference_voxel type, const rea
     (void)on;
     cubic_values(v, type, place, &value);
     return value;
+}
+
+KERNEL void cubic_ask(const kernel_frame *f, const real place[3])
+{
+    (void)f, (void)place;
 }
 
 #endif

@@ -63,13 +63,18 @@ KERNEL void march_over(const kernel_frame *f, const march_lane *lane, const look
         out->rgba[c] = out->rgba[c] + colour[c] * through;
 }
 
-/* Asks for what sample n will read; for gradients also for what lies around the tile of rays: places drawn apart from
- * the middle by two thirds, a pixel's width for the outer ones of four. */
+/* Asks for what sample n will read, of KERNEL_CUBIC for its cell's bounds alone; for gradients also for what lies
+ * around the tile of rays: places drawn apart from the middle by two thirds, a pixel's width for the outer ones of
+ * four. */
 KERNEL void march_ask(const kernel_frame *f, const packet *rays, const bundle *all, kernel_mode mode,
-                      reference_voxel type, int32_t n)
+                      kernel_filter filter, reference_voxel type, int32_t n)
 {
     real at = smaller(spread((REAL)n), to_real(rays->count - 1)), place[3];
     place_of(rays, at, place);
+    if (filter == KERNEL_CUBIC) {
+        cubic_ask(f, place);
+        return;
+    }
     fetch_ahead(&f->volume, type, place);
     if (mode != KERNEL_LIT)
         return;
@@ -131,15 +136,15 @@ KERNEL void march_run(const kernel_frame *f, const march_lane *lane, const looku
 {
     const int batch = mode == KERNEL_LIT || filter == KERNEL_CUBIC ? 1 : MAX_BATCH;
     if (LANES > 1) {
-        const bool asks = filter == KERNEL_CELLS;
+        const bool asks = filter == KERNEL_CELLS || (filter == KERNEL_CUBIC && skip == KERNEL_SKIP_CELLS);
         if (asks) {
             ROLLED
             for (int32_t n = s->asked > s->n ? s->asked : s->n; n < s->n + AHEAD; n++)
-                march_ask(f, rays, all, mode, type, n);
+                march_ask(f, rays, all, mode, filter, type, n);
         }
         while (s->n < s->end && any_lane(s->live)) {
             if (asks)
-                march_ask(f, rays, all, mode, type, s->n + AHEAD);
+                march_ask(f, rays, all, mode, filter, type, s->n + AHEAD);
             march_batch(f, lane, entries, rays, mode, filter, skip, type, 1, true, true, s, out);
             s->n++;
             s->live = s->live & (s->n < rays->count);

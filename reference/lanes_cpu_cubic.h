@@ -222,4 +222,11 @@ KERNEL real sample_cubic(const kernel_volume *v, reference_voxel type, const rea
     return value;
 }
 
+KERNEL void cubic_ask(const kernel_frame *f, const real place[3])
+{
+    const whole cell = cubic_cell(&f->volume, place);
+    for (int l = 0; l < LANES; l++)
+        __builtin_prefetch(f->cells.codes + cell[l]);
+}
+
 #endif
