@@ -123,7 +123,7 @@ reference_status baseline_draw(const reference_volume *volume, const reference_m
     kernel_frame f = {};
     f.camera = job->camera;
     for (int a = 0; a < 3; a++)
-        f.volume.dims_vox[a] = volume->dims_vox[a];
+        f.volume.dims_vox[a] = f.part.whole_vox[a] = f.part.hi_vox[a] = volume->dims_vox[a];
     reference_status status = upload(volume, job, arrays, textures, error);
     f.volume.texture = textures[0];
     if (status == REFERENCE_OK && cudaMalloc(&out, pixels * sizeof *out) != cudaSuccess)
