@@ -4,6 +4,10 @@
 
 #include "kernel_types.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 reference_status part_check_volume(const reference_volume *v, vodr_error *error);
 
 /* Fills *p; refuses a box that the voxels at hand do not hold with the border that its samples need. */
@@ -14,5 +18,9 @@ bool part_is_whole(const kernel_part *p, const int32_t dims_vox[3]);
 
 /* What reference_show_stored() does, with its job's table. */
 void part_show_stored(const kernel_table *table, reference_numbers numbers, double *rgba, size_t count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

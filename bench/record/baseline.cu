@@ -8,6 +8,7 @@
 #define REAL float
 #include "baseline.h"
 #include "kernel_ray.h"
+#include "part.h"
 
 #define TRY(call)                                                                                                      \
     do {                                                                                                               \
@@ -122,9 +123,9 @@ reference_status baseline_draw(const reference_volume *volume, const reference_m
     std::vector<float4> host(pixels);
     kernel_frame f = {};
     f.camera = job->camera;
-    for (int a = 0; a < 3; a++)
-        f.volume.dims_vox[a] = f.part.whole_vox[a] = f.part.hi_vox[a] = volume->dims_vox[a];
-    reference_status status = upload(volume, job, arrays, textures, error);
+    reference_status status = part_of(volume, job, &f.part, error);
+    if (status == REFERENCE_OK)
+        status = upload(volume, job, arrays, textures, error);
     f.volume.texture = textures[0];
     if (status == REFERENCE_OK && cudaMalloc(&out, pixels * sizeof *out) != cudaSuccess)
         status = REFERENCE_NO_MEMORY;
